@@ -75,7 +75,7 @@ pub(crate) fn modes(args: &ModesArgs) -> Result<Exit, CliError> {
         tolerance: args.tolerance,
         ..ModeOptions::default()
     };
-    let found = Vibration::of(assembled.assembly, options, args.prestress)?;
+    let found = Vibration::of(model, assembled.assembly, options, args.prestress)?;
     let folder = output_folder(args.out.as_deref(), None, &args.deck, "-modes")?;
     found.write(
         &folder,

@@ -360,6 +360,7 @@ const WRONG: &[Wrong] = &[
     wrong("fields =", "picture = [{ field = \"Stress_zz\" }]\nfields =", (38, 22), "\"Stress_zz\"", &["unknown field `Stress_zz`", "did you mean `Stress_xx`?"]),
     wrong("fields =", "picture = [{ field = \"Damage\", range = [1, 0] }]\nfields =", (38, 40), "[1, 0]", &["the first smaller"]),
     wrong("fields =", "picture = [{ field = \"Damage\", animation = 12 }]\nfields =", (38, 44), "12", &["true or false"]),
+    wrong("fields =", "picture = [{ field = \"Damage\", edges = 1 }]\nfields =", (38, 40), "1", &["true or false"]),
     // Errors of the library.
     wrong("fracture_energy", "poisson_ratio = 0.3\nfracture_energy", (13, 17), "0.3", &["Poisson's ratio 0.3", "plane strain", "0.25"]),
     wrong("fracture_energy", "influence = { function = \"power\", exponent = -9 }\nfracture_energy", (13, 13), "{ function", &["exponent -9", "allowed: more than"]),

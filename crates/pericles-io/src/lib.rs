@@ -86,7 +86,7 @@ pub use numbering::in_user_order;
 pub use outline::{parse_outline, read_outline};
 pub use picture::{
     Axis, Backdrop, CellSize, ColourMap, Curve, Extent, FieldPicture, LineChart, PictureStyle,
-    Print, quantity, write_animation,
+    Polygon, Polygons, Print, quantity, write_animation,
 };
 pub use points::{parse_points, read_points};
 pub use result_body::{ResultBody, write_error};

@@ -37,7 +37,7 @@ fn plate<'a>(positions: &'a [f64], values: &'a [f64]) -> FieldPicture<'a> {
         .label("Strain_Energy_Density", "J/m³")
         .title("A plate")
         .time(1e-6)
-        .lines(vec![vec![[0.0, 0.01], [0.04, 0.01]]])
+        .lines(vec![vec![[0.0, 0.01, 0.0], [0.04, 0.01, 0.0]]])
 }
 
 fn positions() -> (Vec<f64>, Vec<f64>) {

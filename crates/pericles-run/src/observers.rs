@@ -1,5 +1,6 @@
 //! Observers that write the output requested by a model.
 
+mod body_shape;
 mod impactors;
 mod result_body;
 
@@ -7,15 +8,15 @@ use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use pericles::Simulation;
+use pericles::family::Crack;
 use pericles::observe::{CrackTracker, Schedule};
 use pericles::space::PointCloud;
 use pericles_deck::{
-    CrackSurface, FieldFormat, Model, Picture, PictureColours, PictureFormat, PictureLook,
-    Precision,
+    FieldFormat, Model, Picture, PictureColours, PictureFormat, PictureLook, Precision,
 };
 use pericles_io::observers::{
     CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, ForceDisplacement,
-    FragmentCourse, History, HistoryRows, Overlay, PictureOf, Pictures, ProbeSignals, Profile,
+    FragmentCourse, History, HistoryRows, PictureOf, Pictures, ProbeSignals, Profile,
     ReactionSignals, ResultFile, ResultFormat, SignalTable, Signals, SurfaceCourse,
 };
 use pericles_io::{ColourMap, OutputFolder, PictureStyle, Print};
@@ -30,6 +31,7 @@ use crate::signals::{QuantitySignals, history_signals, scales_loads};
 
 use self::impactors::add_impactors;
 
+pub use self::body_shape::body_shape;
 pub(crate) use self::result_body::field_selection;
 pub use self::result_body::result_body;
 
@@ -196,6 +198,7 @@ fn style_of(look: &PictureLook) -> PictureStyle {
     PictureStyle {
         titled: look.title,
         transparent: look.transparent,
+        edges: look.edges,
         colours: look.colour_map.map(|colours| match colours {
             PictureColours::Viridis => ColourMap::Viridis,
             PictureColours::CoolToWarm => ColourMap::Diverging,
@@ -210,35 +213,10 @@ fn load_end(model: &Model) -> Option<f64> {
     (model.time.scheme.is_static() && !scales_loads(model)).then_some(model.time.end)
 }
 
-/// Returns the lines on pictures of a plane body: pre-cracks, interfaces of materials, borders of refined parts.
-pub fn overlay(model: &Model, cloud: &PointCloud, sets: &Sets) -> Option<Overlay> {
-    if cloud.dimension() != 2 || model.body.solid().is_none() {
-        return None;
-    }
-    let cracks = model
-        .cracks
-        .iter()
-        .filter_map(|crack| match &crack.surface {
-            CrackSurface::Segment(ends) => Some(*ends),
-            _ => None,
-        });
-    let class = match is_on_grid(model, cloud) {
-        false => Vec::new(),
-        true => {
-            let ratio = |i: usize| (cloud.spacing() / cloud.cell_size(i)).round() as u32;
-            let mut class: Vec<u32> = (0..cloud.len()).map(|i| 1000 * ratio(i)).collect();
-            for (number, assignment) in model.assignments.iter().enumerate() {
-                let is_assigned = |name: &String| assignment.sets.contains(name);
-                for (_, points) in sets.iter().filter(|(name, _)| is_assigned(name)) {
-                    for &i in points {
-                        class[i as usize] = 1000 * ratio(i as usize) + number as u32 + 1;
-                    }
-                }
-            }
-            class
-        }
-    };
-    Some(Overlay::new(cloud, cracks.collect(), &class))
+/// Returns the surfaces of the pre-cracks of an assembly.
+pub(crate) fn cracks(assembly: &Assembly) -> Vec<Crack> {
+    let cracks = assembly.cracks.iter();
+    cracks.map(|tracked| tracked.crack.clone()).collect()
 }
 
 /// Returns whether the process that writes the output of a model needs the points of the whole body. For history, probes, reactions
@@ -261,6 +239,7 @@ struct FieldBody {
     sets: Sets,
     surface: Option<Arc<Surface>>,
     meshes: Arc<Meshes>,
+    cracks: Vec<Crack>,
     dt: f64,
     steps: u64,
 }
@@ -289,6 +268,7 @@ impl FieldBody {
             },
             surface: assembly.surface.clone(),
             meshes: Arc::clone(&assembly.meshes),
+            cracks: cracks(assembly),
             dt: assembly.dt,
             steps: assembly.steps,
         }
@@ -412,14 +392,16 @@ fn add_pictures(
         cloud,
         sets,
         surface,
+        meshes,
+        cracks,
         ..
     } = body;
     let dimension = cloud.dimension();
-    let overlay = overlay(model, cloud, sets).map(Arc::new);
+    let shape = body_shape(model, cloud, sets, meshes, cracks).map(Arc::new);
     let mut uses: HashMap<String, u32> = HashMap::new();
     for picture in &model.output.pictures {
         let what = PictureOf {
-            overlay: overlay.clone(),
+            shape: shape.clone(),
             ..picture_of(model, picture, surface.as_ref())
         };
         // Several pictures of one field get distinct names.

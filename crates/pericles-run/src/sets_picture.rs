@@ -8,13 +8,13 @@ use pericles_deck::{ALL, Model};
 use pericles_io::{CellSize, FieldPicture, IoError};
 
 use crate::build::{Assembly, Sets};
-use crate::observers::overlay;
+use crate::observers::{body_shape, cracks};
 
 /// Height of a bar relative to its length: the picture has no second axis.
 const STRIP: f64 = 0.08;
 
 /// Draws the body at rest into a PNG or SVG file: points coloured by the sets that contain them, with a legend;
-/// on plane bodies also pre-cracks, interfaces of materials and borders of refined parts.
+/// also pre-cracks and, on plane bodies, interfaces of materials and borders of refined parts.
 ///
 /// # Errors
 /// The file cannot be written.
@@ -41,9 +41,11 @@ pub fn draw_sets(
     if let Some(surface) = &assembly.surface {
         picture = picture.triangles(surface.triangles());
     }
-    if let Some(overlay) = overlay(model, cloud, &assembly.sets) {
+    let (sets, meshes) = (&assembly.sets, &assembly.meshes);
+    if let Some(shape) = body_shape(model, cloud, sets, meshes, &cracks(assembly)) {
         let at_rest = vec![0.0; cloud.positions().len()];
-        picture = picture.lines(overlay.lines(&at_rest, 1.0));
+        let drawn = shape.drawn(cloud, &at_rest, None, 1.0);
+        picture = picture.polygons(drawn.polygons).lines(drawn.lines);
     }
     picture.write(path)
 }

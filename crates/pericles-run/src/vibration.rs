@@ -5,6 +5,8 @@ use std::sync::Arc;
 
 use pericles::space::PointCloud;
 use pericles::{Interrupt, System};
+use pericles_deck::Model;
+use pericles_io::observers::BodyShape;
 use pericles_io::{
     CellSize, ColourMap, Column, CsvTable, FieldPicture, IoError, OutputFolder, PvdSeries,
     VtkField, VtuFile, in_user_order, write_animation,
@@ -15,6 +17,7 @@ use rayon::prelude::*;
 
 use crate::build::Assembly;
 use crate::error::RunError;
+use crate::observers::{body_shape, cracks};
 
 /// Natural modes of a body.
 pub struct Vibration {
@@ -22,6 +25,7 @@ pub struct Vibration {
     pub modes: NaturalModes,
     cloud: Arc<PointCloud>,
     surface: Option<Arc<Surface>>,
+    shape: Option<BodyShape>,
 }
 
 /// Number of pictures of an animation over one period.
@@ -30,17 +34,20 @@ const STILLS: usize = 16;
 const ENLARGED: f64 = 0.08;
 
 impl Vibration {
-    /// Computes the lowest modes of a body with its initial constraints: about the undeformed body or, if
+    /// Computes the lowest modes of the body of a model with its initial constraints: about the undeformed body or, if
     /// `prestressed`, about the last state of its simulation, which must be static.
     ///
     /// # Errors
     /// The simulation fails, and the errors of [`NaturalModes::find`].
     pub fn of(
+        model: &Model,
         assembly: Assembly,
         options: ModeOptions,
         prestressed: bool,
     ) -> Result<Self, RunError> {
         let (cloud, surface) = (assembly.cloud.clone(), assembly.surface.clone());
+        let (sets, meshes) = (&assembly.sets, &assembly.meshes);
+        let shape = body_shape(model, &cloud, sets, meshes, &cracks(&assembly));
         let find = |system: &System, t: f64, u: &[f64]| {
             NaturalModes::find(options, system, (t, u), Interrupt::never())
         };
@@ -58,6 +65,7 @@ impl Vibration {
             modes: modes?,
             cloud,
             surface,
+            shape,
         })
     }
 
@@ -214,6 +222,10 @@ impl Drawn<'_> {
             .range(least, 1.0);
         if let Some(surface) = &self.body.surface {
             picture = picture.triangles(surface.triangles());
+        }
+        if let Some(shape) = &self.body.shape {
+            let drawn = shape.drawn(cloud, &self.shape, None, factor * ENLARGED * longest);
+            picture = picture.polygons(drawn.polygons).lines(drawn.lines);
         }
         if part.is_some() {
             let around = 1.2 * ENLARGED * longest + 0.5 * cloud.spacing();

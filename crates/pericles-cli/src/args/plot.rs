@@ -74,6 +74,9 @@ pub(crate) struct StyleArgs {
     /// Region of the body shown: a range of coordinates for each axis, such as 10mm:30mm,0:20mm
     #[arg(long, value_name = "RANGES", value_parser = crop, allow_hyphen_values = true)]
     crop: Option<Crop>,
+    /// Draw the edges of the cells
+    #[arg(long)]
+    edges: bool,
     /// Leave out title and time
     #[arg(long)]
     no_title: bool,
@@ -153,6 +156,7 @@ impl StyleArgs {
             Some(Colours::CoolToWarm) => Some(ColourMap::Diverging),
             Some(Colours::Grey) => Some(ColourMap::Grey),
         };
+        style.edges |= self.edges;
         style.titled &= !self.no_title;
         if let Some(background) = self.background {
             style.transparent = background == Background::Transparent;

@@ -10,7 +10,7 @@ use pericles_deck::Model;
 use pericles_io::observers::{DrawnState, ImpactorSurfaces, PictureOf};
 use pericles_io::{Extent, FieldData, write_animation};
 use pericles_run::{
-    FieldFile, Resources, Results, RunError, discretise, machine, overlay, picture_of, readers,
+    FieldFile, Resources, Results, RunError, body_shape, discretise, machine, picture_of, readers,
 };
 
 use crate::args::{Format, PlotArgs};
@@ -40,8 +40,10 @@ pub(super) fn draw(
     };
     let points = discretise(model, &resources);
     let points = points.map_err(|error| source.rejection(error))?;
+    let cracks = points.cracks.into_iter().map(|(crack, _)| crack);
+    let cracks: Vec<_> = cracks.collect();
     let (cloud, surface) = (points.cloud, points.surface);
-    let overlay = overlay(model, &cloud, &points.sets).map(Arc::new);
+    let shape = body_shape(model, &cloud, &points.sets, &points.meshes, &cracks).map(Arc::new);
     let body = Body {
         rows: (0..cloud.len()).map(|i| cloud.user_number(i)).collect(),
         cloud,
@@ -54,7 +56,7 @@ pub(super) fn draw(
     for what in wanted(model, args, &last.read()?, dimension)? {
         pictures.push(PictureOf {
             surface: surface.clone(),
-            overlay: overlay.clone(),
+            shape: shape.clone(),
             steady: args.animation,
             style: args.style.style(what.style)?,
             crop: crop.or(what.crop),
@@ -229,10 +231,15 @@ impl Body {
             None => vec![0.0; n * self.cloud.dimension()],
         };
         let field = self.field(what.field, state, data)?;
+        let damage = match data.field(Field::Damage.name()) {
+            Some(_) => Some(self.field(Field::Damage, state, data)?),
+            None => None,
+        };
         let drawn = DrawnState {
             t: state.time,
             displacement: &displacement,
             values: &what.numbers(&field, n),
+            damage: damage.as_deref(),
             extent: None,
             impactors: &ImpactorSurfaces::read(&self.folder, &self.impactors, state.time)?,
         };

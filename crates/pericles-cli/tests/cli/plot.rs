@@ -25,6 +25,85 @@ fn plot_reproduces_the_pictures_of_the_run_bitwise() {
     assert!(names.into_iter().all(|name| name.ends_with(".png")));
 }
 
+/// A strip of a mesh with a pre-crack that opens under the displacement of its halves.
+const STRIP: &str = r#"
+[body]
+shape = "mesh"
+file = "strip.inp"
+unit = "mm"
+dimension = 2
+thickness = "1 mm"
+plane = "stress"
+[material]
+youngs_modulus = "72 GPa"
+density = 2440
+horizon = "3.1 mm"
+fracture_energy = "10 J/m2"
+[[crack]]
+segment = [["0 mm", "4 mm"], ["6 mm", "4 mm"]]
+[sets]
+top = { where = "y > 0.006" }
+bottom = { where = "y < 0.002" }
+[[constraint]]
+set = "top"
+velocity = ["free", "5 m/s"]
+[[constraint]]
+set = "bottom"
+velocity = ["free", "-5 m/s"]
+[time]
+end = "6 us"
+[output]
+fields = { count = 2 }
+[[output.picture]]
+field = "Damage"
+scale = 20
+edges = true
+count = 2
+"#;
+
+#[test]
+fn pictures_of_a_mesh_are_the_same_during_the_run_and_after_it() {
+    let place = tempfile::tempdir().unwrap();
+    let (columns, rows) = (12, 8);
+    let mut mesh = "*NODE\n".to_owned();
+    let node = |i: usize, j: usize| j * (columns + 1) + i + 1;
+    for (i, j) in (0..=rows).flat_map(|j| (0..=columns).map(move |i| (i, j))) {
+        mesh += &format!("{}, {i}, {j}\n", node(i, j));
+    }
+    mesh += "*ELEMENT, TYPE=CPS4, ELSET=strip\n";
+    for (k, (i, j)) in (0..rows)
+        .flat_map(|j| (0..columns).map(move |i| (i, j)))
+        .enumerate()
+    {
+        let corners = [
+            node(i, j),
+            node(i + 1, j),
+            node(i + 1, j + 1),
+            node(i, j + 1),
+        ];
+        let [a, b, c, d] = corners;
+        mesh += &format!("{}, {a}, {b}, {c}, {d}\n", k + 1);
+    }
+    fs::write(place.path().join("strip.inp"), mesh).unwrap();
+    fs::write(place.path().join("strip.toml"), STRIP).unwrap();
+    succeed(place.path(), "run strip.toml --quiet --out a");
+    succeed(place.path(), "plot a --time all --out b");
+    for number in 0..3 {
+        let name = format!("Damage-{number:06}.png");
+        let [own, again] = ["a/pictures", "b"]
+            .map(|folder| fs::read(place.path().join(folder).join(&name)).unwrap());
+        assert!(own == again, "{name}");
+    }
+    // Edges and another scale change the picture.
+    succeed(
+        place.path(),
+        "plot a --time last --scale 10 --edges --out c",
+    );
+    let [own, other] = ["b", "c"]
+        .map(|folder| fs::read(place.path().join(folder).join("Damage-000002.png")).unwrap());
+    assert!(own != other);
+}
+
 #[test]
 fn other_picture_formats_and_terminal_plots_are_available() {
     let place = with_plate();

@@ -140,6 +140,9 @@ pub struct PictureLook {
     #[serde(default)]
     #[deck(with = crop)]
     pub crop: Option<[Point; 2]>,
+    /// Draw the edges of the cells of 2D and 3D bodies.
+    #[deck(default = false, forbid_if(scope.dimension == Some(1), "it requires a 2D or 3D body"))]
+    pub edges: bool,
     /// Whether title and time are drawn above the picture.
     #[deck(default = true)]
     pub title: bool,
@@ -159,6 +162,7 @@ impl Default for PictureLook {
             dpi: Self::default_dpi(),
             colour_map: None,
             crop: None,
+            edges: Self::default_edges(),
             title: Self::default_title(),
             transparent: Self::default_transparent(),
         }

@@ -127,6 +127,7 @@ field = "Displacement"
 scale = 1
 range = [0, 1]
 animation = true
+edges = true
 interval = 1
 [[output.picture]]
 field = "Damage"

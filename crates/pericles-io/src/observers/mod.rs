@@ -57,15 +57,18 @@
 //! ```
 
 mod background;
+mod body_shape;
 mod cell_mesh;
 mod columns;
 mod cracks;
+mod drawn_cells;
 mod field_columns;
 mod fields;
 mod force_displacement;
 mod fragments;
 mod history;
 mod impactors;
+mod motion;
 mod overlay;
 mod picture_of;
 mod pictures;
@@ -76,6 +79,7 @@ mod signals;
 mod surface;
 mod table;
 
+pub use body_shape::{BodyShape, DrawnShape};
 pub use cell_mesh::CellMesh;
 pub use columns::{
     EnergyBoundColumns, ErrorColumns, ExtremeColumns, HistoryColumns, InnerColumns,
@@ -88,7 +92,6 @@ pub use force_displacement::ForceDisplacement;
 pub use fragments::FragmentCourse;
 pub use history::{History, HistoryRows};
 pub use impactors::{ContactColumns, ImpactorSignals, ImpactorSurfaces};
-pub use overlay::Overlay;
 pub use picture_of::{DrawnState, PictureOf};
 pub use pictures::Pictures;
 pub use profile::{Profile, Reference};

@@ -8,7 +8,7 @@ use pericles::observe::{Field, Snapshot};
 use pericles::space::PointCloud;
 use pericles_manifold::surface::Surface;
 
-use super::overlay::Overlay;
+use super::body_shape::BodyShape;
 use super::rigid::{RigidMesh, rigid_meshes};
 use crate::error::IoError;
 use crate::picture::{CellSize, Extent, FieldPicture, PictureStyle};
@@ -40,8 +40,8 @@ pub struct PictureOf {
     pub crop: Option<[[f64; 3]; 2]>,
     /// Time at which all loads act, s; pictures of static states then show the load factor instead of the time.
     pub load_end: Option<f64>,
-    /// Lines on a plane body.
-    pub overlay: Option<Arc<Overlay>>,
+    /// Cells of the body and lines on it; `None` for squares or cubes around the points.
+    pub shape: Option<Arc<BodyShape>>,
 }
 
 /// A state of a body to draw, its points in the order of their cloud.
@@ -53,6 +53,8 @@ pub struct DrawnState<'a> {
     pub displacement: &'a [f64],
     /// One value per point.
     pub values: &'a [f64],
+    /// Damage of the points, if bonds can break: cells beside a crack are then drawn apart.
+    pub damage: Option<&'a [f64]>,
     /// Range of the values; computed from them if `None`.
     pub extent: Option<Extent>,
     /// Impactors.
@@ -104,7 +106,7 @@ impl PictureOf {
             style: PictureStyle::default(),
             crop: None,
             load_end: None,
-            overlay: None,
+            shape: None,
         }
     }
 
@@ -156,6 +158,7 @@ impl PictureOf {
             snapshot.whole(self.field),
             snapshot.whole(Field::Displacement),
         );
+        let damage = whole_damage(snapshot);
         let (Some(field), Some(displacement)) = (field, displacement) else {
             return Ok(());
         };
@@ -164,6 +167,7 @@ impl PictureOf {
             t: state.t,
             displacement: &displacement,
             values: &values,
+            damage: damage.as_deref(),
             extent: Some(self.extent(&field, &values)),
             impactors: &rigid_meshes(snapshot),
         };
@@ -230,8 +234,9 @@ impl PictureOf {
         if let Some(end) = self.load_end {
             picture = picture.load_factor(state.t / end);
         }
-        if let Some(overlay) = &self.overlay {
-            picture = picture.lines(overlay.lines(state.displacement, self.scale));
+        if let Some(shape) = &self.shape {
+            let drawn = shape.drawn(cloud, state.displacement, state.damage, self.scale);
+            picture = picture.polygons(drawn.polygons).lines(drawn.lines);
         }
         let outlines = state.impactors.iter().map(RigidMesh::outline);
         let corners = state.impactors.iter().flat_map(RigidMesh::corners);
@@ -241,6 +246,13 @@ impl PictureOf {
         );
         picture.write(path)
     }
+}
+
+/// Returns the damage of the points of the whole body, if bonds can break, on the process that writes the results. All
+/// processes must call it together.
+pub(super) fn whole_damage<'a>(snapshot: &'a Snapshot<'_>) -> Option<Cow<'a, [f64]>> {
+    let can_break = snapshot.system().operator().can_break();
+    can_break.then(|| snapshot.whole(Field::Damage)).flatten()
 }
 
 /// Returns the corners of the bounding box of the points, enlarged by a tenth of its longest side.

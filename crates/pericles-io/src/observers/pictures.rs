@@ -10,7 +10,7 @@ use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::space::PointCloud;
 use pericles::{Archive, Checkpointed, PericlesError, Result, Values};
 
-use super::picture_of::{DrawnState, PictureOf};
+use super::picture_of::{DrawnState, PictureOf, whole_damage};
 use super::rigid::{RigidMesh, rigid_meshes};
 use crate::checkpoint::Container;
 use crate::error::IoError;
@@ -38,6 +38,7 @@ struct DrawnFile {
     size: f64,
     displacement: Vec<f64>,
     values: Vec<f64>,
+    damage: Option<Vec<f64>>,
     impactors: Vec<RigidMesh>,
 }
 
@@ -48,6 +49,7 @@ impl DrawnFile {
             snapshot.whole(what.field),
             snapshot.whole(Field::Displacement),
         );
+        let damage = whole_damage(snapshot);
         let field = field?;
         let values = what.numbers(&field, snapshot.whole_cloud().len());
         Some(Self {
@@ -55,6 +57,7 @@ impl DrawnFile {
             size: what.extent(&field, &values).size(),
             displacement: displacement?.into_owned(),
             values: values.into_owned(),
+            damage: damage.map(std::borrow::Cow::into_owned),
             impactors: rigid_meshes(snapshot),
         })
     }
@@ -65,6 +68,9 @@ impl DrawnFile {
         archive.put("size", Values::F64(vec![self.size]));
         archive.put("displacement", Values::F64(self.displacement));
         archive.put("values", Values::F64(self.values));
+        if let Some(damage) = self.damage {
+            archive.put("damage", Values::F64(damage));
+        }
         let impactors = self.impactors.iter().flat_map(RigidMesh::to_numbers);
         archive.put("impactors", Values::F64(impactors.collect()));
         Container::from_archive(serde_json::Value::Null, archive).write(path)
@@ -92,6 +98,7 @@ impl DrawnFile {
             size: number("size")?,
             displacement: array("displacement")?,
             values: array("values")?,
+            damage: archive.f64s("damage").ok().map(<[f64]>::to_vec),
             impactors: RigidMesh::from_numbers(&array("impactors")?)
                 .ok_or_else(|| damaged("impactors are incomplete".into()))?,
         })
@@ -106,6 +113,7 @@ impl DrawnFile {
             t: self.t,
             displacement: &self.displacement,
             values: &self.values,
+            damage: self.damage.as_deref(),
             extent: None,
             impactors: &self.impactors,
         }

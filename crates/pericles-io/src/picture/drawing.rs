@@ -4,7 +4,7 @@
 //! buffer in which the smallest key wins, so that the result does not depend on the order; lines are clipped in
 //! doubles, because curves may leave their chart by any factor.
 
-use super::bitmap::{Bitmap, Pen, Rgb, WHITE};
+use super::bitmap::{Bitmap, INK, Pen, Rgb, WHITE};
 use super::raster::Raster;
 use super::style::PictureStyle;
 use super::text::{self, Style};
@@ -123,6 +123,21 @@ impl Drawing {
 
     pub(super) fn stroke(&mut self, lines: Vec<Vec<Spot>>, pen: Pen) {
         self.shapes.push(Shape::Strokes { lines, pen });
+    }
+
+    /// Draws dark lines with a light rim, visible on all colours.
+    pub(super) fn stroke_on_colours(&mut self, lines: Vec<Vec<Spot>>, width: f64) {
+        if lines.is_empty() {
+            return;
+        }
+        for (width, colour) in [(3.0 * width, WHITE), (width, INK)] {
+            let pen = Pen {
+                width,
+                colour,
+                dash: None,
+            };
+            self.stroke(lines.clone(), pen);
+        }
     }
 
     pub(super) fn fill_disc(&mut self, middle: Spot, radius: f64, colour: Rgb) {

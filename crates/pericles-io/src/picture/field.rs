@@ -8,8 +8,10 @@ use super::drawing::Drawing;
 use super::extent::{Extent, is_signed};
 use super::frame::{ColourBar, Header, finite_range, widened};
 use super::line_chart::LineChart;
+use super::polygon::{Coloured, Polygons};
 use super::scene::{Drawn, Facet, Scene};
 use super::style::PictureStyle;
+use super::surface::facets;
 use super::write::write;
 use super::{plane, solid};
 use crate::IoError;
@@ -44,6 +46,7 @@ pub struct FieldPicture<'a> {
     positions: &'a [f64],
     values: &'a [f64],
     triangles: &'a [[u32; 3]],
+    polygons: Polygons,
     cell: CellSize<'a>,
     displacement: Option<(&'a [f64], f64)>,
     name: String,
@@ -52,7 +55,7 @@ pub struct FieldPicture<'a> {
     title: String,
     time: Option<f64>,
     load_factor: Option<f64>,
-    lines: Vec<Vec<[f64; 2]>>,
+    lines: Vec<Vec<[f64; 3]>>,
     rigid: Vec<[[f64; 3]; 3]>,
     outlines: Vec<Vec<[f64; 2]>>,
     colours: Option<ColourMap>,
@@ -61,17 +64,6 @@ pub struct FieldPicture<'a> {
     window: Option<([f64; 3], [f64; 3])>,
     view: [f64; 3],
     style: PictureStyle,
-}
-
-/// Returns the normal of a triangle, as long as twice its area.
-fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    let u: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
-    let v: [f64; 3] = std::array::from_fn(|k| c[k] - a[k]);
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
 }
 
 impl<'a> FieldPicture<'a> {
@@ -87,6 +79,7 @@ impl<'a> FieldPicture<'a> {
             positions,
             values,
             triangles: &[],
+            polygons: Polygons::default(),
             cell,
             displacement: None,
             name: String::new(),
@@ -111,6 +104,12 @@ impl<'a> FieldPicture<'a> {
     /// Draws a shaded surface of triangles between the points in place of their cells, in three dimensions.
     pub fn triangles(mut self, triangles: &'a [[u32; 3]]) -> Self {
         self.triangles = triangles;
+        self
+    }
+
+    /// Draws polygons, such as the cells of a mesh, in place of the squares or cubes of the points that have a cell.
+    pub fn polygons(mut self, polygons: Polygons) -> Self {
+        self.polygons = polygons;
         self
     }
 
@@ -152,8 +151,9 @@ impl<'a> FieldPicture<'a> {
         self
     }
 
-    /// Adds lines on a plane body, such as pre-cracks and interfaces, as polylines of positions in m.
-    pub fn lines(mut self, lines: Vec<Vec<[f64; 2]>>) -> Self {
+    /// Adds lines on a body, such as pre-cracks and interfaces, as polylines of positions in m. Parts that a solid hides
+    /// are dashed.
+    pub fn lines(mut self, lines: Vec<Vec<[f64; 3]>>) -> Self {
         self.lines = lines;
         self
     }
@@ -227,7 +227,7 @@ impl<'a> FieldPicture<'a> {
             return self.along_the_bar().draw(path);
         }
         let scene = self.scene();
-        if scene.cells.is_empty() && scene.facets.is_empty() {
+        if scene.is_empty() {
             return Err(IoError::Unsuitable {
                 path: path.to_path_buf(),
                 reason: "no point has a finite position".into(),
@@ -279,6 +279,11 @@ impl<'a> FieldPicture<'a> {
         if self.triangles.iter().flatten().any(|&k| k as usize >= n) {
             return Err(unsuitable(format!(
                 "triangles refer to points beyond the {n} points of the body"
+            )));
+        }
+        if self.polygons.all.iter().any(|one| one.point as usize >= n) {
+            return Err(unsuitable(format!(
+                "polygons refer to points beyond the {n} points of the body"
             )));
         }
         if let Some((low, high)) = self.window {
@@ -347,16 +352,15 @@ impl<'a> FieldPicture<'a> {
 
     fn scene(&self) -> Scene {
         let bar = self.colour_bar();
-        let mut cells = Vec::with_capacity(self.values.len());
+        let has_cell = |point: usize| self.polygons.has_cell.get(point) == Some(&true);
+        let without_cell = (self.values.iter().enumerate()).filter(|(point, _)| !has_cell(*point));
+        let mut cells = Vec::new();
         let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for (point, &value) in self.values.iter().enumerate() {
+        for (point, &value) in without_cell {
             let middle = self.place(point);
-            let half = self.cell.of(point).map(|edge| {
-                if edge.is_finite() {
-                    0.5 * edge.abs()
-                } else {
-                    0.0
-                }
+            let half = self.cell.of(point).map(|edge| match edge.is_finite() {
+                true => 0.5 * edge.abs(),
+                false => 0.0,
             });
             // If the solution has diverged, some positions are not finite; the others are still drawn.
             if middle.iter().any(|c| !c.is_finite()) {
@@ -375,8 +379,20 @@ impl<'a> FieldPicture<'a> {
                 });
             }
         }
-        let outlines = self.outlines.iter().flatten().map(|&[x, y]| [x, y, 0.0]);
-        let around = self.rigid.iter().flatten().copied().chain(outlines);
+        let polygons = self.polygons.all.iter();
+        let polygons = polygons.filter(|one| one.corners.iter().flatten().all(|x| x.is_finite()));
+        let polygons: Vec<Coloured> = polygons
+            .map(|one| Coloured {
+                corners: one.corners,
+                colour: bar.colour(self.values[one.point as usize]),
+            })
+            .collect();
+        let outlines = self.outlines.iter();
+        let outlines = outlines.map(|line| line.iter().map(|&[x, y]| [x, y, 0.0]).collect());
+        let outlines: Vec<Vec<[f64; 3]>> = outlines.collect();
+        let corners = polygons.iter().flat_map(|one| &one.corners);
+        let around = corners.chain(self.rigid.iter().flatten());
+        let around = around.chain(outlines.iter().flatten());
         for corner in around {
             for c in 0..self.dimension {
                 low[c] = low[c].min(corner[c]);
@@ -394,6 +410,7 @@ impl<'a> FieldPicture<'a> {
             style: self.style,
             is_strip: self.dimension == 1,
             cells,
+            polygons,
             facets: self.facets(),
             low,
             high,
@@ -402,44 +419,23 @@ impl<'a> FieldPicture<'a> {
             header,
             length_unit: self.length_unit,
             view: self.view,
-            lines: self.lines.iter().chain(&self.outlines).cloned().collect(),
+            lines: self.lines.iter().cloned().chain(outlines).collect(),
             rigid: self.rigid.clone(),
         }
     }
 
-    /// Returns the triangles whose corners are finite.
     fn facets(&self) -> Vec<Facet> {
         if self.triangles.is_empty() {
             return Vec::new();
         }
-        let places: Vec<[f64; 3]> = (0..self.values.len())
-            .map(|point| self.place(point))
-            .collect();
-        let corners = |triangle: [u32; 3]| triangle.map(|point| places[point as usize]);
-        let is_finite =
-            |triangle: &&[u32; 3]| corners(**triangle).iter().flatten().all(|x| x.is_finite());
-        let mut normals = vec![[0.0; 3]; places.len()];
-        for triangle in self.triangles.iter().filter(is_finite) {
-            let normal = normal(corners(*triangle));
-            for &point in triangle {
-                for c in 0..3 {
-                    normals[point as usize][c] += normal[c];
-                }
-            }
-        }
-        self.triangles
-            .iter()
-            .filter(is_finite)
-            .map(|triangle| Facet {
-                corners: corners(*triangle),
-                normals: triangle.map(|point| normals[point as usize]),
-                values: match &self.categories {
-                    // Numbers are not interpolated.
-                    Some(_) => [self.values[triangle[0] as usize]; 3],
-                    None => triangle.map(|point| self.values[point as usize]),
-                },
-            })
-            .collect()
+        let places = (0..self.values.len()).map(|point| self.place(point));
+        let places: Vec<[f64; 3]> = places.collect();
+        facets(
+            self.triangles,
+            &places,
+            self.values,
+            self.categories.is_some(),
+        )
     }
 
     fn shown_title(&self) -> &str {

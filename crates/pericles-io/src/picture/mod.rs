@@ -1,9 +1,9 @@
 //! Pictures as PNG, SVG or PDF files: fields on the points of a body, and charts of curves.
 //!
 //! * [`FieldPicture`]: every point as a filled cell at its displaced position, coloured by a scalar, with
-//!   colour bar, time stamp and suitable length unit. A plane body has axes; a solid is shown in parallel
-//!   projection along a chosen direction, with hidden cells removed; a bar is drawn as a curve over its
-//!   length.
+//!   colour bar, time stamp and suitable length unit. Cells are [`Polygons`] or, for points without a mesh,
+//!   squares and cubes. A plane body has axes; a solid is shown in parallel projection along a chosen
+//!   direction, with hidden faces removed; a bar is drawn as a curve over its length.
 //! * [`LineChart`]: named curves, with optional markers, dashes and logarithmic axes; a [`Backdrop`] adds a
 //!   colour map below them.
 //! * [`write_animation`]: several pictures as an animation in one file.
@@ -46,10 +46,13 @@ mod legend;
 mod line_chart;
 mod pdf;
 mod plane;
+mod polygon;
+mod projection;
 mod raster;
 mod scene;
 mod solid;
 mod style;
+mod surface;
 mod svg;
 mod text;
 mod ticks;
@@ -63,4 +66,5 @@ pub use extent::Extent;
 pub use field::{CellSize, FieldPicture};
 pub use line_chart::LineChart;
 pub use pericles::units::quantity;
+pub use polygon::{Polygon, Polygons};
 pub use style::{PictureStyle, Print};

@@ -1,9 +1,9 @@
 //! Picture of a plane body with axes.
 
-use super::bitmap::{INK, Pen, WHITE};
 use super::clip::clipped;
 use super::drawing::{Drawing, Spot};
 use super::frame::{Area, AxisText, ColourBar, Frame, Scale, Sizes};
+use super::polygon;
 use super::raster::Raster;
 use super::scene::Scene;
 use super::ticks::Ticks;
@@ -73,24 +73,20 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
         let half = (cell.half[0] * per_metre, cell.half[1] * per_metre);
         raster.cell((x - left, y - top), half, cell.colour);
     }
+    let place = |p: [f64; 3]| {
+        let (x, y) = frame.place(p[0] / shown.factor, p[1] / shown.factor);
+        [x - left, y - top, 0.0]
+    };
+    let edges = scene.style.edges.then_some(sizes.line);
+    polygon::draw(&mut raster, &scene.polygons, place, None, edges);
     let mut drawing = Drawing::new(&scene.style, (area.bottom + sizes.below()).ceil() as usize);
     drawing.cells(raster, left as usize, top as usize);
     let lines = scene.lines.iter().map(|line| {
-        let place = |p: &[f64; 2]| frame.place(p[0] / shown.factor, p[1] / shown.factor);
+        let place = |p: &[f64; 3]| frame.place(p[0] / shown.factor, p[1] / shown.factor);
         line.iter().map(place).collect::<Vec<Spot>>()
     });
     let lines: Vec<Vec<Spot>> = lines.flat_map(|line| clipped(&line, area)).collect();
-    if !lines.is_empty() {
-        // Dark lines with a light rim, visible on all colours.
-        for (width, colour) in [(3.0 * sizes.line, WHITE), (sizes.line, INK)] {
-            let pen = Pen {
-                width,
-                colour,
-                dash: None,
-            };
-            drawing.stroke(lines.clone(), pen);
-        }
-    }
+    drawing.stroke_on_colours(lines, sizes.line);
 
     let x = AxisText {
         ticks: frame

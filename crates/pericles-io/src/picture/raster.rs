@@ -2,8 +2,8 @@
 //! distance from the cell centre in the plane and the depth in space, so that neighbours share a clean border
 //! and the order of points does not matter.
 //!
-//! Among faces of equal depth the one with the smaller number is visible, so that the drawing order does not
-//! matter. Large hidden faces are skipped by the largest key of every tile of pixels: a rod seen end on has
+//! Among triangles of equal depth the one with the smaller number is visible, so that the drawing order does not
+//! matter. Large hidden triangles are skipped by the largest key of every tile of pixels: a rod seen end on has
 //! as many layers as cells along it.
 
 use std::ops::Range;
@@ -18,7 +18,7 @@ pub(super) struct Raster {
     /// Subpixels per pixel and direction; their mean smooths the edges.
     fine: usize,
     key: Vec<f32>,
-    /// Number of the face that has the key.
+    /// Number of the patch that has the key.
     owner: Vec<u32>,
     colour: Vec<Rgb>,
     /// Largest key of each tile; `None` where pixels have changed since it was computed.
@@ -31,14 +31,14 @@ pub(super) struct Raster {
 /// Side length of a tile in subpixels.
 const TILE: usize = 16;
 
-/// A parallelogram in space: centre and two half edges; (x, y) in pixels, then the distance from the viewer.
+/// Place of a patch in the order of equal depths, and the border around it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Face {
-    pub(super) middle: [f64; 3],
-    pub(super) a: [f64; 3],
-    pub(super) b: [f64; 3],
-    /// Depth of the border around the face behind the face itself: large enough for every neighbour to cover it.
-    pub(super) seam: f64,
+pub(super) struct Rank {
+    /// Among patches of equal depth the one with the smallest number is visible.
+    pub(super) number: u32,
+    /// Depth of the border around the patch behind the patch itself: large enough for every neighbour to cover it.
+    /// `None` without a border.
+    pub(super) seam: Option<f64>,
 }
 
 impl Raster {
@@ -65,18 +65,18 @@ impl Raster {
         first..end.min(size)
     }
 
-    fn put(&mut self, i: usize, j: usize, key: f32, colour: Rgb) {
-        self.put_of(i, j, key, u32::MAX, colour);
+    /// Returns whether a patch is in front of what a pixel shows.
+    fn shows(&self, i: usize, j: usize, key: f32, number: u32) -> bool {
+        let at = j * self.width + i;
+        key < self.key[at] || key == self.key[at] && number < self.owner[at]
     }
 
-    fn put_of(&mut self, i: usize, j: usize, key: f32, number: u32, colour: Rgb) {
+    fn put(&mut self, i: usize, j: usize, key: f32, number: u32, colour: Rgb) {
         let at = j * self.width + i;
-        if key < self.key[at] || key == self.key[at] && number < self.owner[at] {
-            self.key[at] = key;
-            self.owner[at] = number;
-            self.colour[at] = colour;
-            self.tiles[j / TILE * self.width.div_ceil(TILE) + i / TILE] = None;
-        }
+        self.key[at] = key;
+        self.owner[at] = number;
+        self.colour[at] = colour;
+        self.tiles[j / TILE * self.width.div_ceil(TILE) + i / TILE] = None;
     }
 
     /// Returns whether a rectangle of pixels is completely covered by nearer faces. Small rectangles are not
@@ -121,59 +121,22 @@ impl Raster {
             let v = (j as f64 + 0.5 - y).abs() / half.1;
             for i in columns.clone() {
                 let u = (i as f64 + 0.5 - x).abs() / half.0;
-                self.put(i, j, u.max(v) as f32, colour);
-            }
-        }
-    }
-
-    /// Draws a face seen from any direction, with a border of half a pixel that closes gaps between neighbours.
-    pub(super) fn face(&mut self, face: &Face, number: u32, colour: Rgb) {
-        let fine = self.fine as f64;
-        let [x, y, depth] = [face.middle[0] * fine, face.middle[1] * fine, face.middle[2]];
-        let [ax, ay] = [face.a[0] * fine, face.a[1] * fine];
-        let [bx, by] = [face.b[0] * fine, face.b[1] * fine];
-        let det = ax * by - ay * bx;
-        let (length_a, length_b) = (ax.hypot(ay), bx.hypot(by));
-        // seen edge-on: no visible area
-        if det.abs() <= 1e-9 * length_a * length_b || det == 0.0 {
-            return;
-        }
-        // Half a pixel, measured along each edge.
-        let slack = |length: f64| 1.0 + 0.5 * length / det.abs();
-        let (most_s, most_t) = (slack(length_b), slack(length_a));
-        let reach = |a: f64, b: f64| most_s * a.abs() + most_t * b.abs();
-        let columns = Self::range(x - reach(ax, bx), x + reach(ax, bx), self.width);
-        let rows = Self::range(y - reach(ay, by), y + reach(ay, by), self.height);
-        let nearest = depth - most_s * face.a[2].abs() - most_t * face.b[2].abs();
-        if self.hides(&columns, &rows, nearest as f32) {
-            return;
-        }
-        #[cfg(test)]
-        {
-            self.visited += columns.len() * rows.len();
-        }
-        for j in rows {
-            let v = j as f64 + 0.5 - y;
-            for i in columns.clone() {
-                let u = i as f64 + 0.5 - x;
-                let s = (u * by - v * bx) / det;
-                let t = (ax * v - ay * u) / det;
-                if s.abs() <= most_s && t.abs() <= most_t {
-                    let seam = if s.abs() > 1.0 || t.abs() > 1.0 {
-                        face.seam
-                    } else {
-                        0.0
-                    };
-                    let key = depth + s * face.a[2] + t * face.b[2] + seam;
-                    self.put_of(i, j, key as f32, number, colour);
+                let key = u.max(v) as f32;
+                if self.shows(i, j, key, u32::MAX) {
+                    self.put(i, j, key, u32::MAX, colour);
                 }
             }
         }
     }
 
-    /// Draws a triangle in space, (x, y) in pixels and the distance from the viewer; `colour` takes the
-    /// barycentric coordinates. A border of half a pixel closes gaps between neighbours.
-    pub(super) fn triangle(&mut self, corners: [[f64; 3]; 3], colour: impl Fn([f64; 3]) -> Rgb) {
+    /// Draws a triangle: (x, y) in pixels and the distance from the viewer. `colour` takes the barycentric coordinates.
+    /// A border of half a pixel closes gaps between neighbours.
+    pub(super) fn triangle(
+        &mut self,
+        corners: [[f64; 3]; 3],
+        rank: Rank,
+        colour: impl Fn([f64; 3]) -> Rgb,
+    ) {
         let fine = self.fine as f64;
         let [a, b, c] = corners.map(|[x, y, depth]| [x * fine, y * fine, depth]);
         let doubled = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
@@ -183,17 +146,27 @@ impl Raster {
         }
         let edge = |p: [f64; 3], q: [f64; 3]| (q[0] - p[0]).hypot(q[1] - p[1]);
         // Half a pixel relative to the height above each corner's opposite edge.
-        let slack = [edge(b, c), edge(c, a), edge(a, b)].map(|edge| 0.5 * edge / doubled.abs());
+        let border = if rank.seam.is_some() { 0.5 } else { 0.0 };
+        let slack = [edge(b, c), edge(c, a), edge(a, b)].map(|edge| border * edge / doubled.abs());
         let bounds = |k: usize| {
             let values = [a[k], b[k], c[k]];
             let low = values.into_iter().fold(f64::INFINITY, f64::min);
             let high = values.into_iter().fold(f64::NEG_INFINITY, f64::max);
-            (low - 1.0, high + 1.0)
+            (low, high)
         };
-        let (left, right) = bounds(0);
-        let (top, bottom) = bounds(1);
-        let columns = Self::range(left, right, self.width);
-        for j in Self::range(top, bottom, self.height) {
+        let ((left, right), (top, bottom), (near, far)) = (bounds(0), bounds(1), bounds(2));
+        let columns = Self::range(left - 1.0, right + 1.0, self.width);
+        let rows = Self::range(top - 1.0, bottom + 1.0, self.height);
+        // The border continues the slope of the triangle.
+        let nearest = near - (far - near) * slack.iter().sum::<f64>();
+        if self.hides(&columns, &rows, nearest as f32) {
+            return;
+        }
+        #[cfg(test)]
+        {
+            self.visited += columns.len() * rows.len();
+        }
+        for j in rows {
             let y = j as f64 + 0.5;
             for i in columns.clone() {
                 let x = i as f64 + 0.5;
@@ -202,15 +175,33 @@ impl Raster {
                 };
                 let shares = [area(b, c), area(c, a), area(a, b)];
                 if (0..3).all(|k| shares[k] >= -slack[k]) {
-                    let depth = shares[0] * a[2] + shares[1] * b[2] + shares[2] * c[2];
+                    let seam = match shares.iter().any(|share| *share < 0.0) {
+                        true => rank.seam.unwrap_or(0.0),
+                        false => 0.0,
+                    };
+                    let depth = shares[0] * a[2] + shares[1] * b[2] + shares[2] * c[2] + seam;
                     let key = depth as f32;
                     // Colours take longer than what hides most of them.
-                    if key < self.key[j * self.width + i] {
-                        self.put(i, j, key, colour(shares));
+                    if self.shows(i, j, key, rank.number) {
+                        self.put(i, j, key, rank.number, colour(shares));
                     }
                 }
             }
         }
+    }
+
+    /// Returns whether a place, in pixels, is not hidden by what is nearer than its distance from the viewer by more than
+    /// `slack`. One uncovered pixel next to it suffices, because lines run along the edges of what they lie on.
+    pub(super) fn is_visible(&self, [x, y, depth]: [f64; 3], slack: f64) -> bool {
+        let fine = self.fine as f64;
+        let around = |at: f64, size: usize| Self::range(at * fine - 1.5, at * fine + 1.5, size);
+        let (columns, rows) = (around(x, self.width), around(y, self.height));
+        rows.into_iter().any(|j| {
+            let row = &self.key[j * self.width..(j + 1) * self.width];
+            row[columns.clone()]
+                .iter()
+                .any(|key| f64::from(*key) >= depth - slack)
+        })
     }
 
     /// Returns width and height in whole pixels.
@@ -299,14 +290,29 @@ mod tests {
         assert!((0..2500).all(|k| bitmap.pixel(k % 50, k / 50) == BLUE));
     }
 
+    /// Draws a parallelogram by its centre and two half edges.
+    fn draw(raster: &mut Raster, middle: [f64; 3], [a, b]: [[f64; 3]; 2], rank: Rank, colour: Rgb) {
+        let corner = |s: f64, t: f64| std::array::from_fn(|c| middle[c] + s * a[c] + t * b[c]);
+        let [p, q, r, s] = [
+            corner(-1.0, -1.0),
+            corner(1.0, -1.0),
+            corner(1.0, 1.0),
+            corner(-1.0, 1.0),
+        ];
+        raster.triangle([p, q, r], rank, |_| colour);
+        raster.triangle([p, r, s], rank, |_| colour);
+    }
+
+    fn rank(number: u32) -> Rank {
+        Rank {
+            number,
+            seam: Some(0.1),
+        }
+    }
+
     #[test]
     fn the_nearer_face_hides_the_other_in_any_order() {
-        let face = |depth: f64| Face {
-            middle: [20.0, 20.0, depth],
-            a: [8.0, 3.0, 0.0],
-            b: [-2.0, 9.0, 0.0],
-            seam: 0.1,
-        };
+        let edges = [[8.0, 3.0, 0.0], [-2.0, 9.0, 0.0]];
         for flip in [false, true] {
             let mut raster = Raster::new(40, 40, 2);
             let mut order = [(1.0, RED), (2.0, BLUE)];
@@ -314,7 +320,7 @@ mod tests {
                 order.reverse();
             }
             for (depth, colour) in order {
-                raster.face(&face(depth), 0, colour);
+                draw(&mut raster, [20.0, 20.0, depth], edges, rank(0), colour);
             }
             let bitmap = bitmap_of(&raster);
             assert_eq!(bitmap.pixel(20, 20), RED);
@@ -328,17 +334,23 @@ mod tests {
         for layer in order {
             let depth = f64::from(layer);
             for cell in 0..100_u32 {
-                let face = Face {
-                    middle: [
-                        40.0 * f64::from(cell % 10) + 20.0,
-                        40.0 * f64::from(cell / 10) + 20.0,
-                        depth,
-                    ],
-                    a: [20.0, 0.5, 0.1],
-                    b: [-0.5, 20.0, -0.2],
-                    seam: 0.3,
+                let middle = [
+                    40.0 * f64::from(cell % 10) + 20.0,
+                    40.0 * f64::from(cell / 10) + 20.0,
+                    depth,
+                ];
+                let edges = [[20.0, 0.5, 0.1], [-0.5, 20.0, -0.2]];
+                let rank = Rank {
+                    number: 100 * layer + cell,
+                    seam: Some(0.3),
                 };
-                raster.face(&face, 100 * layer + cell, [cell as u8, layer as u8, 0]);
+                draw(
+                    &mut raster,
+                    middle,
+                    edges,
+                    rank,
+                    [cell as u8, layer as u8, 0],
+                );
             }
         }
         raster
@@ -359,20 +371,34 @@ mod tests {
     #[test]
     fn the_depth_of_a_tilted_face_varies_over_it() {
         let mut raster = Raster::new(40, 40, 1);
-        let flat = Face {
-            middle: [20.0, 20.0, 0.0],
-            a: [10.0, 0.0, 0.0],
-            b: [0.0, 10.0, 0.0],
-            seam: 0.1,
-        };
-        let tilted = Face {
-            a: [10.0, 0.0, 1.0],
-            ..flat
-        };
-        raster.face(&flat, 0, RED);
-        raster.face(&tilted, 1, BLUE);
+        let (middle, across) = ([20.0, 20.0, 0.0], [0.0, 10.0, 0.0]);
+        draw(
+            &mut raster,
+            middle,
+            [[10.0, 0.0, 0.0], across],
+            rank(0),
+            RED,
+        );
+        draw(
+            &mut raster,
+            middle,
+            [[10.0, 0.0, 1.0], across],
+            rank(1),
+            BLUE,
+        );
         let bitmap = bitmap_of(&raster);
         assert_eq!(bitmap.pixel(12, 20), BLUE);
         assert_eq!(bitmap.pixel(28, 20), RED);
+    }
+
+    #[test]
+    fn a_place_is_hidden_by_what_is_nearer_only() {
+        let mut raster = Raster::new(40, 40, 2);
+        let edges = [[10.0, 0.0, 0.0], [0.0, 10.0, 0.0]];
+        draw(&mut raster, [20.0, 20.0, 5.0], edges, rank(0), RED);
+        assert!(raster.is_visible([20.0, 20.0, 5.2], 0.5));
+        assert!(!raster.is_visible([20.0, 20.0, 6.0], 0.5));
+        // Beside the face nothing is hidden.
+        assert!(raster.is_visible([35.0, 20.0, 6.0], 0.5));
     }
 }

@@ -1,14 +1,16 @@
-//! Solids in parallel projection: cells as boxes with hidden faces removed, axis directions and a scale bar.
+//! Solids in parallel projection: faces of cells with hidden ones removed, lines, axis directions and a scale bar.
 
 use super::bitmap::{INK, Pen, Rgb};
+use super::clip::clipped;
 use super::colour::shaded;
-use super::drawing::Drawing;
+use super::drawing::{Drawing, Spot};
 use super::frame::{Area, ColourBar, Sizes};
-use super::raster::{Face, Raster};
+use super::polygon;
+use super::projection::{Placing, View, cross, dot};
+use super::raster::{Rank, Raster};
 use super::scene::{Facet, Scene};
 use super::text::{Align, Style};
 use super::ticks::{Ticks, round_below};
-use pericles::sum::max_norm;
 use pericles::units::quantity;
 
 const MARGIN: f64 = 0.03;
@@ -18,8 +20,11 @@ const TALLEST: f64 = 0.9;
 /// Maximum number of cells with antialiased edges, to limit the time.
 const MANY: usize = 300_000;
 
-/// Light on faces turned away from the source, as a fraction of full light.
-const SHADE: f64 = 0.75;
+/// Place of surfaces and rigid bodies behind cells of equal depth.
+const LAST: Rank = Rank {
+    number: u32::MAX,
+    seam: Some(0.0),
+};
 
 /// Colours of the axes x, y, z, as usual in computer graphics but dark enough for white paper.
 const AXES: [(&str, Rgb); 3] = [
@@ -30,61 +35,6 @@ const AXES: [(&str, Rgb); 3] = [
 
 /// Colour of rigid bodies.
 const RIGID: Rgb = [168, 172, 178];
-
-/// Unit vectors of the screen: to the right, upwards, and towards the viewer.
-#[derive(Debug, Clone, Copy)]
-struct View {
-    right: [f64; 3],
-    up: [f64; 3],
-    eye: [f64; 3],
-}
-
-impl View {
-    fn new(direction: [f64; 3]) -> Self {
-        let eye = normalised(direction);
-        // z points up, or y when looking along z.
-        let upright = if eye[2].abs() > 0.999 {
-            [0.0, 1.0, 0.0]
-        } else {
-            [0.0, 0.0, 1.0]
-        };
-        let right = normalised(cross(upright, eye));
-        Self {
-            right,
-            up: cross(eye, right),
-            eye,
-        }
-    }
-
-    /// Projects a point: to the right, upwards, towards the viewer.
-    fn project(&self, p: [f64; 3]) -> [f64; 3] {
-        [dot(p, self.right), dot(p, self.up), dot(p, self.eye)]
-    }
-
-    /// Returns the light on a surface with this normal, from above left of the viewer; normals are taken
-    /// towards the viewer.
-    fn light_on(&self, normal: [f64; 3]) -> f64 {
-        /// Light on surfaces that the source does not reach.
-        const AMBIENT: f64 = 0.6;
-        let lamp = |k: usize| self.eye[k] + 0.7 * self.up[k] - 0.5 * self.right[k];
-        let lamp = [lamp(0), lamp(1), lamp(2)];
-        let size = (dot(normal, normal) * dot(lamp, lamp)).sqrt();
-        if size == 0.0 {
-            return 1.0;
-        }
-        let towards = dot(normal, lamp) * dot(normal, self.eye).signum() / size;
-        AMBIENT + (1.0 - AMBIENT) * towards.max(0.0)
-    }
-
-    /// Returns the light on the visible faces across the three axes; the brightest has full light.
-    fn light(&self) -> [f64; 3] {
-        let lamp: [f64; 3] =
-            std::array::from_fn(|k| self.eye[k] + 0.7 * self.up[k] - 0.4 * self.right[k]);
-        let straight: [f64; 3] = std::array::from_fn(|c| (self.eye[c].signum() * lamp[c]).max(0.0));
-        let most = straight.into_iter().fold(f64::MIN_POSITIVE, f64::max);
-        straight.map(|part| SHADE + (1.0 - SHADE) * part / most)
-    }
-}
 
 pub(super) fn draw(scene: &Scene) -> Drawing {
     let sizes = Sizes::of(&scene.style);
@@ -123,7 +73,10 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     let per_metre = (area.width() / ew).min(height / eh);
 
     let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
-    let fine = if scene.cells.len() > MANY { 1 } else { 2 };
+    let fine = match scene.cells.len() + scene.polygons.len() > MANY {
+        true => 1,
+        false => 2,
+    };
     let mut raster = Raster::new(area.width() as usize, height as usize, fine);
     let placing = Placing {
         view,
@@ -132,13 +85,18 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
         half: [0.5 * area.width(), 0.5 * height],
     };
     draw_cells(&mut raster, scene, &placing);
+    let place = |p| placing.place(p);
+    let edges = scene.style.edges.then_some(sizes.line);
+    polygon::draw(&mut raster, &scene.polygons, place, Some(&view), edges);
     draw_facets(&mut raster, scene, &placing);
     draw_rigid(&mut raster, scene, &placing);
 
     let arm = 3.0 * sizes.tick_text;
     let below = 2.0 * arm + sizes.tick_text + 2.0 * sizes.gap;
     let mut drawing = Drawing::new(&scene.style, (area.bottom + below).ceil() as usize);
+    let lines = seen_lines(&raster, scene, &placing);
     drawing.cells(raster, left as usize, top as usize);
+    draw_lines(&mut drawing, lines, area, &sizes);
     draw_directions(&mut drawing, &view, area, arm, &sizes);
     draw_length(&mut drawing, area, (per_metre, scene.length_unit), &sizes);
     scene.bar.draw(&mut drawing, area, &bar_ticks, &sizes);
@@ -148,72 +106,32 @@ pub(super) fn draw(scene: &Scene) -> Drawing {
     drawing
 }
 
-/// Returns the extent of the body on the screen: minimum and maximum coordinates to the right and upwards, m.
+/// Returns the extent of the picture on the screen: minimum and maximum coordinates to the right and upwards, m.
 fn extent(scene: &Scene, view: &View) -> ([f64; 2], [f64; 2]) {
-    // Its bounding box.
+    let corners: Vec<[f64; 3]> = match scene.window {
+        false => scene.corners().collect(),
+        true => (0..8)
+            .map(|corner| {
+                std::array::from_fn(|c| match corner >> c & 1 {
+                    0 => scene.low[c],
+                    _ => scene.high[c],
+                })
+            })
+            .collect(),
+    };
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-    for corner in 0..8 {
-        let p = std::array::from_fn(|c| {
-            if corner >> c & 1 == 0 {
-                scene.low[c]
-            } else {
-                scene.high[c]
-            }
-        });
-        for (c, value) in view.project(p).into_iter().take(2).enumerate() {
+    for corner in corners {
+        for (c, value) in view.project(corner).into_iter().take(2).enumerate() {
             low[c] = low[c].min(value);
             high[c] = high[c].max(value);
-        }
-    }
-    // A surface need not fill its bounding box.
-    if !scene.facets.is_empty() && !scene.window {
-        let (mut least, mut most) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for corner in scene.facets.iter().flat_map(|facet| facet.corners) {
-            for (c, value) in view.project(corner).into_iter().take(2).enumerate() {
-                least[c] = least[c].min(value);
-                most[c] = most[c].max(value);
-            }
-        }
-        for c in 0..2 {
-            low[c] = low[c].max(least[c]);
-            high[c] = high[c].min(most[c]).max(low[c]);
         }
     }
     (low, high)
 }
 
-/// Mapping from positions in space to pixels of the plot.
-struct Placing {
-    view: View,
-    /// Centre of the plot on the screen, m.
-    middle: [f64; 2],
-    per_metre: f64,
-    /// Half the size of the plot, in pixels.
-    half: [f64; 2],
-}
-
-impl Placing {
-    /// Maps to the right, downwards and away from the viewer, relative to a position on the screen.
-    fn relative(&self, p: [f64; 3], of: [f64; 2]) -> [f64; 3] {
-        let [x, y, near] = self.view.project(p);
-        [
-            (x - of[0]) * self.per_metre,
-            (of[1] - y) * self.per_metre,
-            -near,
-        ]
-    }
-
-    /// Maps to pixels of the plot.
-    fn place(&self, p: [f64; 3]) -> [f64; 3] {
-        let [x, y, far] = self.relative(p, self.middle);
-        [x + self.half[0], y + self.half[1], far]
-    }
-}
-
 /// Draws cells as boxes with three visible faces.
 fn draw_cells(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     let view = &placing.view;
-    let light = view.light();
     // Front to back, so that hidden faces can be skipped.
     let mut order: Vec<(usize, f64)> = (scene.cells.iter())
         .map(|cell| -dot(cell.middle, view.eye))
@@ -222,21 +140,25 @@ fn draw_cells(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     order.sort_by(|(_, a), (_, b)| a.total_cmp(b));
     for (k, _) in order {
         let cell = &scene.cells[k];
-        for (c, light) in light.into_iter().enumerate() {
-            let (c1, c2) = ((c + 1) % 3, (c + 2) % 3);
-            let along = |c: usize, sign: f64| {
-                let mut edge = [0.0; 3];
-                edge[c] = sign * cell.half[c];
-                edge
+        let seam = 2.0 * cell.half[0].max(cell.half[1]).max(cell.half[2]);
+        for c in 0..3 {
+            let mut normal = [0.0; 3];
+            normal[c] = view.eye[c].signum();
+            let colour = shaded(cell.colour, view.light_on_face(normal));
+            let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(s, t)| {
+                let mut side = normal;
+                side[(c + 1) % 3] = s;
+                side[(c + 2) % 3] = t;
+                let corner = std::array::from_fn(|k| cell.middle[k] + side[k] * cell.half[k]);
+                placing.place(corner)
+            });
+            let rank = Rank {
+                number: (3 * k + c) as u32,
+                seam: Some(seam),
             };
-            let outward = along(c, view.eye[c].signum());
-            let face = Face {
-                middle: placing.place(std::array::from_fn(|k| cell.middle[k] + outward[k])),
-                a: placing.relative(along(c1, 1.0), [0.0; 2]),
-                b: placing.relative(along(c2, 1.0), [0.0; 2]),
-                seam: 2.0 * cell.half[0].max(cell.half[1]).max(cell.half[2]),
-            };
-            raster.face(&face, (3 * k + c) as u32, shaded(cell.colour, light));
+            let [p, q, r, s] = corners;
+            raster.triangle([p, q, r], rank, |_| colour);
+            raster.triangle([p, r, s], rank, |_| colour);
         }
     }
 }
@@ -254,7 +176,7 @@ fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
         |corners: &[[f64; 3]; 3]| corners.iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
     placed.sort_by(|(a, _), (b, _)| nearest(a).total_cmp(&nearest(b)));
     for (corners, facet) in placed {
-        raster.triangle(corners, |shares| {
+        raster.triangle(corners, LAST, |shares| {
             let [s, t, r] = shares;
             let mix = |[x, y, z]: [f64; 3]| s * x + t * y + r * z;
             let [a, b, c] = facet.normals;
@@ -275,8 +197,67 @@ fn draw_rigid(raster: &mut Raster, scene: &Scene, placing: &Placing) {
         let edge = |p: [f64; 3]| std::array::from_fn(|k| p[k] - a[k]);
         let light = placing.view.light_on(cross(edge(b), edge(c)));
         let colour = shaded(RIGID, light);
-        raster.triangle(corners.map(|corner| placing.place(corner)), |_| colour);
+        raster.triangle(corners.map(|corner| placing.place(corner)), LAST, |_| {
+            colour
+        });
     }
+}
+
+/// Visible and hidden parts of lines, in pixels of the plot.
+type SeenLines = [Vec<Vec<Spot>>; 2];
+
+/// Returns the visible and the hidden parts of the lines on the body.
+fn seen_lines(raster: &Raster, scene: &Scene, placing: &Placing) -> SeenLines {
+    /// Length of the parts that are hidden or visible as a whole, and depth by which lines may lie below a face, in pixels.
+    const PART: f64 = 2.0;
+    const BELOW: f64 = 2.5;
+    let mut seen: SeenLines = Default::default();
+    for line in &scene.lines {
+        let places: Vec<[f64; 3]> = line.iter().map(|place| placing.place(*place)).collect();
+        let mut last = None;
+        for pair in places.windows(2) {
+            let (from, to) = (pair[0], pair[1]);
+            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+            let parts = (length / PART).ceil().max(1.0);
+            let at = |s: f64| -> [f64; 3] {
+                std::array::from_fn(|c| from[c] + (to[c] - from[c]) * s / parts)
+            };
+            for k in 0..parts as usize {
+                let (begin, end) = (at(k as f64), at(k as f64 + 1.0));
+                let middle = at(k as f64 + 0.5);
+                let hidden = !raster.is_visible(middle, BELOW / placing.per_metre);
+                let kind = usize::from(hidden);
+                if last != Some(kind) {
+                    seen[kind].push(vec![(begin[0], begin[1])]);
+                }
+                last = Some(kind);
+                if let Some(line) = seen[kind].last_mut() {
+                    line.push((end[0], end[1]));
+                }
+            }
+        }
+    }
+    seen
+}
+
+/// Draws lines on the body, the hidden ones dashed.
+fn draw_lines(drawing: &mut Drawing, lines: SeenLines, area: Area, sizes: &Sizes) {
+    let [visible, hidden] = lines.map(|lines| -> Vec<Vec<Spot>> {
+        let moved = |(x, y): &Spot| (x + area.left, y + area.top);
+        let lines = lines.iter().map(|line| line.iter().map(moved).collect());
+        let lines = lines.flat_map(|line: Vec<Spot>| clipped(&line, area));
+        lines.collect()
+    });
+    let width = sizes.line;
+    let pen = Pen {
+        width: 0.7 * width,
+        colour: INK,
+        dash: Some([3.0 * width, 3.5 * width]),
+    };
+    if !hidden.is_empty() {
+        drawing.stroke(hidden, pen);
+    }
+    drawing.stroke_on_colours(visible, width);
 }
 
 /// Draws the axis directions in the lower left corner.
@@ -339,55 +320,9 @@ fn round_quantity(length: f64, unit: &str) -> String {
     }
 }
 
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-fn normalised(v: [f64; 3]) -> [f64; 3] {
-    // Squares of the largest and smallest numbers overflow and underflow.
-    let largest = max_norm(&v);
-    let v = v.map(|c| c / largest);
-    let length = dot(v, v).sqrt();
-    v.map(|c| c / length)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn screen_axes_are_right_handed_from_every_direction() {
-        for direction in [
-            [0.5, -1.0, 0.6],
-            [0.0, 0.0, 3.0],
-            [0.0, 0.0, -1.0],
-            [-2.0, 0.1, 0.0],
-            [1e300, -1e300, 1e300],
-            [0.0, 1e-300, 0.0],
-        ] {
-            let view = View::new(direction);
-            let axes = [view.right, view.up, view.eye];
-            for (k, axis) in axes.iter().enumerate() {
-                for (l, other) in axes.iter().enumerate() {
-                    let expected = if k == l { 1.0 } else { 0.0 };
-                    assert!((dot(*axis, *other) - expected).abs() < 1e-12);
-                }
-            }
-            let turned = cross(view.right, view.up);
-            assert!(dot(turned, view.eye) > 0.999 && dot(view.eye, direction) > 0.0);
-            assert!(view.up[2] >= 0.0);
-        }
-        let front = View::new([0.0, -1.0, 0.0]);
-        assert_eq!(front.project([1.0, 2.0, 3.0]), [1.0, 3.0, -2.0]);
-    }
 
     #[test]
     fn lengths_are_written_without_trailing_zeros() {

@@ -20,6 +20,8 @@ pub struct PictureStyle {
     pub titled: bool,
     /// Whether the background is transparent instead of white.
     pub transparent: bool,
+    /// Whether the edges of cells are drawn.
+    pub edges: bool,
     /// Colour map of fields; `None` for the one that suits the values.
     pub colours: Option<ColourMap>,
 }
@@ -63,6 +65,7 @@ impl Default for PictureStyle {
             print: None,
             titled: true,
             transparent: false,
+            edges: false,
             colours: None,
         }
     }

@@ -38,6 +38,11 @@ impl VtuCells {
         &self.corners[start as usize..self.ends[cell] as usize]
     }
 
+    /// Returns VTK's type of a cell.
+    pub(crate) fn vtk_type(&self, cell: usize) -> u8 {
+        self.types[cell]
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.types.is_empty()

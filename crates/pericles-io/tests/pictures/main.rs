@@ -1,5 +1,7 @@
 //! Content of pictures, read back from their files.
 
+mod polygons;
+
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufReader;
