@@ -40,8 +40,7 @@ impl InelasticSolidBody<'_> {
     ///
     /// # Errors
     /// Errors of [`LinearSolidBody::operator`] and of [`Inelasticity::check`]; a kernel other than a list,
-    /// surface correction, a number of laws that is not the number of materials; a
-    /// body divided among processes.
+    /// surface correction, a number of laws that is not the number of materials.
     pub fn operator(&self, form: BondForm) -> Result<AssembledBonds> {
         match (self.elastic.strains, self.elastic.cloud.dimension()) {
             (Strains::Finite, 1) => self.of_form::<FiniteStrain, 1>(form),
