@@ -24,7 +24,7 @@ pub struct NamedSet {
     pub members: Members,
 }
 
-/// Set of points, given by a region, a condition, blocks, or the distance from faces of a mesh. Element groups, face sets and
+/// Set of points, given by a region, a condition, blocks, numbers of points, or the distance from faces of a mesh. Element groups, face sets and
 /// node sets of a mesh are sets under their own names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "snake_case")]
@@ -42,6 +42,10 @@ pub enum Members {
     /// the number of their group, counted from 1 in the order that `pericles mesh` prints, or 0 without a group.
     #[deck(key = "block")]
     Blocks(#[deck(with = blocks)] Vec<u32>),
+    /// Numbers of points, in the order of the points file or of the field files, counted from 0 as ParaView does: a number, or
+    /// a list of numbers and ranges such as [0, 7, "20-35"].
+    #[deck(key = "points")]
+    Numbers(#[deck(with = numbers)] Vec<[u32; 2]>),
     /// Mesh: points within a distance of the faces of a face set, for supports and loads that act on a layer of horizon
     /// thickness.
     #[deck(allow_if(
@@ -74,8 +78,22 @@ impl Members {
             Self::Region(region) => cloud.select(region),
             Self::Where(condition) => those(&|i| condition.holds(cloud.point(i), cloud.block(i))),
             Self::Blocks(blocks) => those(&|i| blocks.contains(&cloud.block(i))),
+            Self::Numbers(ranges) => those(&|i| {
+                let number = cloud.user_number(i) as u32;
+                ranges
+                    .iter()
+                    .any(|[first, last]| (*first..=*last).contains(&number))
+            }),
             Self::NearFaces(_) => return None,
         })
+    }
+
+    /// Returns the largest point number, if the points are given by numbers.
+    pub fn largest_number(&self) -> Option<u32> {
+        match self {
+            Self::Numbers(ranges) => ranges.iter().map(|[_, last]| *last).max(),
+            _ => None,
+        }
     }
 
     /// Returns the region, if it is one.
@@ -198,6 +216,34 @@ fn blocks<S>(item: &Item<'_>, _: S) -> Option<Vec<u32>> {
     let items = item.list("a list of block numbers")?;
     let numbers: Vec<Option<u32>> = items.iter().map(block).collect();
     numbers.into_iter().collect()
+}
+
+/// Reads point numbers, or ranges of them: first and last numbers.
+fn numbers<S>(item: &Item<'_>, _: S) -> Option<Vec<[u32; 2]>> {
+    let range = |item: &Item<'_>| {
+        let allowed = "a whole number of at least 0, or a range such as \"20-35\"";
+        let Some(text) = item.word() else {
+            let number = item.within(Quantity::Number, allowed, |number| {
+                number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number)
+            })?;
+            return Some([number as u32; 2]);
+        };
+        let ends = text.split_once('-').and_then(|(first, last)| {
+            let ends = [first.trim().parse().ok()?, last.trim().parse().ok()?];
+            (ends[0] <= ends[1]).then_some(ends)
+        });
+        if ends.is_none() {
+            item.out_of_range(allowed);
+        }
+        item.record(text);
+        ends
+    };
+    if !item.is_list() {
+        return Some(vec![range(item)?]);
+    }
+    let items = item.list("a list of point numbers and ranges")?;
+    let ranges: Vec<Option<[u32; 2]>> = items.iter().map(range).collect();
+    ranges.into_iter().collect()
 }
 
 /// Returns the fault of an invalid name of a set or probe; such names become part of column names.

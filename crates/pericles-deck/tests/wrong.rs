@@ -120,6 +120,8 @@ const WRONG: &[Wrong] = &[
     wrong("dt = \"auto\"", "scheme = \"multirate-rk4\"\nratio = 0\nfine = \"top\"", (36, 9), "0", &["whole number from 1 to 1000"]),
     wrong("dt = \"auto\"", "scheme = \"multirate-rk4\"\nratio = 2000\nfine = \"top\"", (36, 9), "2000", &["from 1 to 1000"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4", (33, 1), "[time]", &["requires one of `fine` and `adaptive`"]),
+    wrong("[sets.top]", "[sets.some]\npoints = [1, \"7-3\"]\n[sets.top]", (16, 14), "\"7-3\"", &["out of range", "a range such as \"20-35\""]),
+    wrong("[sets.top]", "[sets.some]\npoints = 1.5\n[sets.top]", (16, 10), "1.5", &["out of range", "a whole number"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"tip\"", (37, 8), "\"tip\"", &["unknown set `tip`", "did you mean `top`?"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"top\"\nadaptive = {}", (38, 12), "{}", &["`fine` and `adaptive` are given together"]),
     wrong("dt = \"auto\"", "scheme = \"respa\"\nratio = 4\nfine = \"top\"\npredictor = \"structured\"", (38, 1), "predictor", &["not allowed", "multirate-rk3"]),

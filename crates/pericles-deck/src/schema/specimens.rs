@@ -188,6 +188,8 @@ j = { complement = { all = true } }
 k = { where = "x > 0" }
 l = { block = 1 }
 m = { block = [1, 2] }
+n = { points = 3 }
+o = { points = [0, '2-5'] }
 [[crack]]
 polygon = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
 [[crack]]

@@ -173,6 +173,18 @@ impl Assembler<'_> {
         meshes: &Meshes,
         path: &KeyPath,
     ) -> Result<PointSet, BuildError> {
+        let points = cloud.domain().whole_points();
+        if let Some(number) = members.largest_number().filter(|&k| k as usize >= points) {
+            let value = number.to_string();
+            let allowed = format!(
+                "allowed: point numbers from 0 to {}",
+                points.saturating_sub(1)
+            );
+            return Err(at_path(
+                path.key("points"),
+                Fault::OutOfRange { value, allowed },
+            ));
+        }
         let (faces, depth) = match members {
             Members::NearFaces(near) => (&near.faces, near.depth),
             members => return Ok(members.of(cloud).unwrap_or_default()),

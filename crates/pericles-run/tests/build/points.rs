@@ -353,6 +353,18 @@ fn listed_points_of_a_grid_equal_the_grid() {
         error.contains("the set `right` selects no point"),
         "{error}"
     );
+    let by_number = |numbers: &str| LISTED.replace("block = 2", &format!("points = {numbers}"));
+    let some = built(&by_number("[3, \"5-7\", 6]"), cell).unwrap_or_else(|error| panic!("{error}"));
+    let (_, members) = some.sets.iter().find(|(name, _)| name == "right").unwrap();
+    let mut numbers: Vec<usize> = members
+        .iter()
+        .map(|&i| some.cloud.user_number(i as usize))
+        .collect();
+    numbers.sort_unstable();
+    assert_eq!(numbers, [3, 5, 6, 7]);
+    let error = rejected(&by_number("[0, 1000000]"), cell);
+    assert!(error.contains("`1000000` is out of range"), "{error}");
+    assert!(error.contains("point numbers from 0 to"), "{error}");
     let error = rejected(&LISTED.replace("area = \"12 mm2\"", ""), cell);
     assert!(error.contains("listed points have no faces"), "{error}");
     assert!(rejection(LISTED).to_string().contains("no reader for"));
