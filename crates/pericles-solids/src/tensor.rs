@@ -1,14 +1,17 @@
-//! Small matrices and their principal axes.
+//! Small matrices and their principal axes. The functions of matrices are inlined, because those of D = 2 and 3 take as long
+//! as a call.
 
 /// A square matrix by rows.
 pub type Matrix<const D: usize> = [[f64; D]; D];
 
 /// Returns the unit matrix.
+#[inline(always)]
 pub fn unit<const D: usize>() -> Matrix<D> {
     diagonal([1.0; D])
 }
 
 /// Returns a diagonal matrix.
+#[inline(always)]
 pub fn diagonal<const D: usize>(entries: [f64; D]) -> Matrix<D> {
     let mut matrix = [[0.0; D]; D];
     for (a, entry) in entries.into_iter().enumerate() {
@@ -18,42 +21,56 @@ pub fn diagonal<const D: usize>(entries: [f64; D]) -> Matrix<D> {
 }
 
 /// Returns A B.
+#[inline(always)]
 pub fn product<const D: usize>(a: &Matrix<D>, b: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| (0..D).map(|k| a[i][k] * b[k][j]).sum())
 }
 
 /// Returns Aᵀ.
+#[inline(always)]
 pub fn transpose<const D: usize>(a: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| a[j][i])
 }
 
 /// Returns s A + t B.
+#[inline(always)]
 pub fn combination<const D: usize>(s: f64, a: &Matrix<D>, t: f64, b: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| s * a[i][j] + t * b[i][j])
 }
 
 /// Returns ½ (A + Aᵀ).
+#[inline(always)]
 pub fn symmetric<const D: usize>(a: &Matrix<D>) -> Matrix<D> {
     matrix(|i, j| 0.5 * (a[i][j] + a[j][i]))
 }
 
 /// Returns Σ A_ii.
+#[inline(always)]
 pub fn trace<const D: usize>(a: &Matrix<D>) -> f64 {
     (0..D).map(|i| a[i][i]).sum()
 }
 
 /// Returns A : B = Σ A_ij B_ij.
+#[inline(always)]
 pub fn contraction<const D: usize>(a: &Matrix<D>, b: &Matrix<D>) -> f64 {
     let rows = a.iter().flatten().zip(b.iter().flatten());
     rows.map(|(x, y)| x * y).sum()
 }
 
 /// Returns a matrix from a function of row and column.
+#[inline(always)]
 pub fn matrix<const D: usize>(entry: impl Fn(usize, usize) -> f64) -> Matrix<D> {
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
+    let mut matrix = [[0.0; D]; D];
+    for (i, row) in matrix.iter_mut().enumerate() {
+        for (j, value) in row.iter_mut().enumerate() {
+            *value = entry(i, j);
+        }
+    }
+    matrix
 }
 
 /// Returns the 3 × 3 matrix with `a` in the first rows and columns and `rest` on the remaining diagonal.
+#[inline(always)]
 pub fn in_space<const D: usize>(a: &Matrix<D>, rest: f64) -> Matrix<3> {
     matrix(|i, j| match i < D && j < D {
         true => a[i][j],
@@ -63,17 +80,20 @@ pub fn in_space<const D: usize>(a: &Matrix<D>, rest: f64) -> Matrix<3> {
 }
 
 /// Returns the first D rows and columns.
+#[inline(always)]
 pub fn in_body<const D: usize>(a: &Matrix<3>) -> Matrix<D> {
     matrix(|i, j| a[i][j])
 }
 
 /// Returns the determinant.
+#[inline(always)]
 pub fn determinant(a: &Matrix<3>) -> f64 {
     let minor = |j: usize, k: usize| a[1][j] * a[2][k] - a[1][k] * a[2][j];
     a[0][0] * minor(1, 2) - a[0][1] * minor(0, 2) + a[0][2] * minor(0, 1)
 }
 
 /// Returns the inverse of a matrix with this determinant.
+#[inline(always)]
 pub fn inverse(a: &Matrix<3>, determinant: f64) -> Matrix<3> {
     let of = |i: usize, j: usize| {
         let ([p, q], [r, s]) = (others(j), others(i));

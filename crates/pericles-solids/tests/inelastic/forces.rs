@@ -283,18 +283,11 @@ fn unsupported_features_of_inelastic_bodies_are_errors() {
         },
         laws,
     };
-    let mut by_energy = constants.clone();
-    by_energy.limits.energy = 1.0;
     for (body, form, words) in [
         (
             body(&constants, SolidSurface::Energy, &laws),
             BondForm::List,
             "the surface correction of viscous and plastic materials",
-        ),
-        (
-            body(&by_energy, SolidSurface::None, &laws),
-            BondForm::List,
-            "break by stretch only",
         ),
         (
             body(&constants, SolidSurface::None, &laws),
