@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use pericles_io::observers::profile_chart;
 use pericles_io::{Axis, Curve, IoError, LineChart, read_csv};
 
 use crate::time_axis::TimeAxis;
@@ -87,6 +88,27 @@ pub(crate) fn of_table(
         }
     }
     Ok(charts)
+}
+
+/// Returns the chart of a table of a field along a line; `None` for other tables.
+///
+/// # Errors
+/// The table cannot be read.
+pub(crate) fn of_profile(path: &Path) -> Result<Option<LineChart>, IoError> {
+    let table = read_csv(path)?;
+    // The place follows the distance, then the field and a known solution.
+    let values = |k: usize| table.values.get(k).map(Vec::as_slice);
+    let columns = &table.columns;
+    let is_profile = columns
+        .first()
+        .is_some_and(|first| first.name() == "distance");
+    Ok(match (values(0), columns.get(4), values(4)) {
+        (Some(distances), Some(field), Some(numbers)) if is_profile => {
+            let what = (field.name(), field.unit());
+            Some(profile_chart(distances, what, numbers, values(5)))
+        }
+        _ => None,
+    })
 }
 
 fn thinned(values: &[f64], stride: usize) -> Vec<f64> {

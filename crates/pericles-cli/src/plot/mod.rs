@@ -20,7 +20,7 @@ use crate::time_axis::TimeAxis;
 
 pub(crate) use sweep::usual as usual_scalars;
 
-/// Renders the requested fields and columns or, by default, pictures of the last state and charts of all tables.
+/// Renders the requested fields and columns or, by default, pictures of the last state and charts of all tables and profiles.
 ///
 /// # Errors
 /// The folder has no results or damaged files, a field or column does not exist, or a picture cannot be written.
@@ -60,6 +60,13 @@ pub(crate) fn plot(args: &PlotArgs) -> Result<Exit, CliError> {
         chart.drawn().style(style).write(&path)?;
         written.push(path);
     }
+    for table in results.tables().iter().filter(|_| everything) {
+        if let Some(chart) = charts::of_profile(table)? {
+            let path = place.join(format!("{}.{}", stem(table), args.format.ending()));
+            chart.style(style).write(&path)?;
+            written.push(path);
+        }
+    }
     for path in &written {
         console::print(format_args!("{}", path.display()))?;
     }
@@ -87,10 +94,13 @@ fn write(chart: LineChart, name: &str, place: &Path, args: &PlotArgs) -> Result<
     Ok(console::print(format_args!("{}", path.display()))?)
 }
 
+fn stem(table: &Path) -> String {
+    file_name(table).trim_end_matches(".csv").to_owned()
+}
+
 /// Returns the charts of the requested columns, by default of all, with the names of their tables.
 fn charts_of(results: &Results, columns: &[String]) -> Result<Vec<(String, Chart)>, CliError> {
     let along = TimeAxis::of(results);
-    let stem = |table: &Path| file_name(table).trim_end_matches(".csv").to_owned();
     let (mut charts, mut known) = (Vec::new(), Vec::new());
     for table in results.tables() {
         let found = charts::of_table(&table, along, |column| {

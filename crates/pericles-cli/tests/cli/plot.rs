@@ -470,3 +470,21 @@ fn manual_pages_are_written_for_every_command() {
     assert_eq!(status, 2);
     assert!(message.contains("run"), "{message}");
 }
+
+/// Profiles are redrawn in the requested format, beside the charts of tables.
+#[test]
+fn profiles_are_plotted_again() {
+    let place = tempfile::tempdir().unwrap();
+    let deck = "body = { shape = \"bar\", length = 20, spacing = 1 }\n\
+        material = { density = 1, youngs_modulus = 1, horizon_ratio = 3 }\n\
+        initial = [{ displacement = [{ expression = \"0.01*sin(x)\" }] }]\n\
+        time = { end = 2 }\n\
+        output = { profile = [{ name = \"axis\", field = \"Displacement\", from = [0], to = [20] }] }\n";
+    std::fs::write(place.path().join("deck.toml"), deck).unwrap();
+    succeed(place.path(), "run deck.toml --out run");
+    let output = succeed(place.path(), "plot run --width 88mm --format pdf");
+    let printed = text(&output.stdout);
+    assert!(printed.contains("profile_axis.pdf"), "{printed}");
+    let drawn = std::fs::read(place.path().join("run/plots/profile_axis.pdf")).unwrap();
+    assert!(drawn.starts_with(b"%PDF"));
+}

@@ -94,7 +94,7 @@ pub use history::{History, HistoryRows};
 pub use impactors::{ContactColumns, ImpactorSignals, ImpactorSurfaces};
 pub use picture_of::{DrawnState, PictureOf};
 pub use pictures::Pictures;
-pub use profile::{Profile, Reference};
+pub use profile::{Profile, Reference, profile_chart};
 pub use result_file::{RecordedFields, ResultFile, ResultFormat};
 pub use rigid::{RigidMesh, impactors};
 pub use signals::{EnergySignals, ProbeSignals, ReactionSignals, SignalTable, Signals, TimeSignal};

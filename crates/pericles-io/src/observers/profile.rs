@@ -77,6 +77,20 @@ impl Profile {
     }
 }
 
+/// Returns the chart of a field of this name and unit over the distance along a line, beside a known solution.
+pub fn profile_chart(
+    distances: &[f64],
+    (name, unit): (&str, &str),
+    values: &[f64],
+    known: Option<&[f64]>,
+) -> LineChart {
+    let mut chart = LineChart::new(Axis::new("distance", "m"), Axis::new(name, unit));
+    if let Some(known) = known {
+        chart = chart.curve(Curve::line("reference", distances, known).dashed());
+    }
+    chart.curve(Curve::line(name.replace('_', " "), distances, values).with_markers())
+}
+
 /// The points within half a spacing of a line, by their distance from its beginning.
 fn stations(cloud: &PointCloud, [from, to]: [Point; 2]) -> Vec<Station> {
     /// Positions are equal to rounding.
@@ -161,13 +175,8 @@ impl Observer for Profile {
         }
         table.flush()?;
         let distances: Vec<f64> = self.stations.iter().map(|one| one.distance).collect();
-        let axes = (Axis::new("distance", "m"), Axis::new(name.clone(), unit));
-        let mut chart = LineChart::new(axes.0, axes.1).title(&self.title).time(t);
-        if let Some(known) = &known {
-            chart = chart.curve(Curve::line("reference", &distances, known).dashed());
-        }
-        let curve = Curve::line(name.replace('_', " "), &distances, &values);
-        Ok(chart.curve(curve.with_markers()).write(&self.chart)?)
+        let chart = profile_chart(&distances, (&name, unit), &values, known.as_deref());
+        Ok(chart.title(&self.title).time(t).write(&self.chart)?)
     }
 }
 
