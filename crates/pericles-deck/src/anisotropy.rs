@@ -6,8 +6,7 @@ use pericles_deck_derive::DeckTable;
 use pericles_solids::correspondence::{Orthotropy, Stiffness};
 use serde::{Deserialize, Serialize};
 
-use crate::declaration::Check;
-use crate::key_path::KeyPath;
+use crate::body::{Rotation, check_axis};
 use crate::quantity::Quantity;
 use crate::range::{Range, from_to};
 use crate::reader::{Item, Table};
@@ -61,11 +60,6 @@ const ANGLES: Range = from_to(-std::f64::consts::TAU, std::f64::consts::TAU)
 
 fn axis<S>(item: &Item<'_>, _: S) -> Option<[f64; 3]> {
     region::direction(item, Some(3))
-}
-
-fn check_axis<S>(axis: &[f64; 3], path: &KeyPath, _: S, check: &mut Check) {
-    let right = axis.iter().any(|&x| x != 0.0) && axis.iter().all(|x| x.is_finite());
-    check.within(right, path.key("axis"), "zero", "allowed: a nonzero vector");
 }
 
 /// Reads entries for three axes.
@@ -127,7 +121,12 @@ impl Anisotropy {
             })?,
             _ => Stiffness::new(self.stiffness.unwrap_or([[0.0; 6]; 6]))?,
         };
-        Ok(own.turned(&turn(self.axis, self.angle)))
+        let axes = Rotation {
+            angle: self.angle,
+            axis: self.axis,
+            centre: None,
+        };
+        Ok(own.turned(&axes.matrix()))
     }
 
     /// Returns the constants of Voigt's average over all orientations, which state the scale of the stiffness.
@@ -142,18 +141,4 @@ impl Anisotropy {
             ..GivenConstants::default()
         })
     }
-}
-
-/// Returns the rotation by an angle about an axis of any length.
-fn turn(axis: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
-    let length = axis.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let n = axis.map(|x| x / length);
-    let (sin, cos) = angle.sin_cos();
-    let cross = [[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]];
-    std::array::from_fn(|a| {
-        std::array::from_fn(|b| {
-            let along = (1.0 - cos) * n[a] * n[b];
-            along + sin * cross[a][b] + if a == b { cos } else { 0.0 }
-        })
-    })
 }

@@ -24,8 +24,8 @@ pub struct NamedSet {
     pub members: Members,
 }
 
-/// Set of points, given by a region, a condition, blocks, numbers of points, or the distance from faces of a mesh. Element groups, face sets and
-/// node sets of a mesh are sets under their own names.
+/// Set of points, given by a region, a condition, blocks, numbers of points, or the distance from faces of a mesh. Element
+/// groups, face sets and node sets of a mesh are sets under their own names.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, DeckKeys)]
 #[serde(rename_all = "snake_case")]
 #[deck(exclusive, scope = Frame)]
@@ -201,15 +201,18 @@ fn condition(item: &Item<'_>, frame: Frame) -> Option<Condition> {
     .ok()
 }
 
+/// Reads a whole number; `allowed` describes the key.
+fn whole(item: &Item<'_>, allowed: &str) -> Option<u32> {
+    let number = item.within(Quantity::Number, allowed, |number| {
+        number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number)
+    })?;
+    Some(number as u32)
+}
+
 /// Reads a block number or a list of block numbers.
 fn blocks<S>(item: &Item<'_>, _: S) -> Option<Vec<u32>> {
-    let block = |item: &Item<'_>| {
-        let allowed = "a whole number of at least 0, or a list of such numbers";
-        let number = item.within(Quantity::Number, allowed, |number| {
-            number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number)
-        })?;
-        Some(number as u32)
-    };
+    let allowed = "a whole number of at least 0, or a list of such numbers";
+    let block = |item: &Item<'_>| whole(item, allowed);
     if !item.is_list() {
         return Some(vec![block(item)?]);
     }
@@ -223,10 +226,7 @@ fn numbers<S>(item: &Item<'_>, _: S) -> Option<Vec<[u32; 2]>> {
     let range = |item: &Item<'_>| {
         let allowed = "a whole number of at least 0, or a range such as \"20-35\"";
         let Some(text) = item.word() else {
-            let number = item.within(Quantity::Number, allowed, |number| {
-                number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number)
-            })?;
-            return Some([number as u32; 2]);
+            return whole(item, allowed).map(|number| [number; 2]);
         };
         let ends = text.split_once('-').and_then(|(first, last)| {
             let ends = [first.trim().parse().ok()?, last.trim().parse().ok()?];

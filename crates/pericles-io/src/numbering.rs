@@ -4,6 +4,15 @@ use std::borrow::Cow;
 
 use pericles::space::PointCloud;
 
+/// Returns the point of each user's number.
+pub(crate) fn points_by_number(cloud: &PointCloud) -> Vec<u32> {
+    let mut points = vec![0; cloud.len()];
+    for i in 0..cloud.len() {
+        points[cloud.user_number(i)] = i as u32;
+    }
+    points
+}
+
 /// Mapping from the point order of the cloud to the user's order; `None` if they are equal.
 #[derive(Debug, Clone)]
 pub(crate) struct Numbering(Option<Vec<usize>>);

@@ -45,6 +45,25 @@ impl CellKind {
         Hexahedron,
     ];
 
+    /// Returns the number of this type in VTK.
+    pub fn vtk(self) -> u8 {
+        match self {
+            Point => 1,
+            Line => 3,
+            Triangle => 5,
+            Quadrilateral => 9,
+            Tetrahedron => 10,
+            Hexahedron => 12,
+            Wedge => 13,
+            Pyramid => 14,
+        }
+    }
+
+    /// Returns the type of a number in VTK; `None` for others.
+    pub fn of_vtk(number: u8) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.vtk() == number)
+    }
+
     /// Returns the name for `count` cells of this type: "triangle", "triangles".
     pub fn word(self, count: usize) -> &'static str {
         let [one, several] = match self {

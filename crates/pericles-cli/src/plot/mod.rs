@@ -60,9 +60,10 @@ pub(crate) fn plot(args: &PlotArgs) -> Result<Exit, CliError> {
         chart.drawn().style(style).write(&path)?;
         written.push(path);
     }
-    for table in results.tables().iter().filter(|_| everything) {
-        if let Some(chart) = charts::of_profile(table)? {
-            let path = place.join(format!("{}.{}", stem(table), args.format.ending()));
+    let tables = results.tables().into_iter();
+    for table in tables.filter(|table| everything && stem(table).starts_with("profile_")) {
+        if let Some(chart) = charts::of_profile(&table)? {
+            let path = place.join(format!("{}.{}", stem(&table), args.format.ending()));
             chart.style(style).write(&path)?;
             written.push(path);
         }

@@ -18,7 +18,7 @@ pub use surface::{SurfaceFile, SurfaceFormula, SurfaceShape, VertexAreas};
 pub use types::{Lattice, Piece, Quadrature, SolidShape, piece_path};
 pub use unit::length_unit;
 
-pub(crate) use rotation::RotationScope;
+pub(crate) use rotation::{RotationScope, check_axis};
 pub(crate) use types::{BodyRead, SurfaceRead};
 pub(crate) use unit::{check_unit, unit_of};
 

@@ -37,6 +37,25 @@ pub struct Rotation {
     pub centre: Option<[f64; 3]>,
 }
 
+impl Rotation {
+    /// Returns the matrix of the rotation by rows (formula of Rodrigues).
+    pub fn matrix(&self) -> [[f64; 3]; 3] {
+        let length = self.axis.iter().map(|a| a * a).sum::<f64>().sqrt();
+        let a = self.axis.map(|entry| entry / length);
+        let (sin, cos) = self.angle.sin_cos();
+        std::array::from_fn(|r| {
+            std::array::from_fn(|c| {
+                let across = match (3 + c - r) % 3 {
+                    0 => cos,
+                    1 => -sin * a[3 - r - c],
+                    _ => sin * a[3 - r - c],
+                };
+                across + (1.0 - cos) * a[r] * a[c]
+            })
+        })
+    }
+}
+
 /// Scope of a rotation.
 #[derive(Clone, Copy)]
 pub(crate) struct RotationScope {
@@ -72,7 +91,8 @@ fn axis(item: &Item<'_>, scope: RotationScope) -> Option<[f64; 3]> {
     region::direction(item, scope.dimension.or(Some(3)))
 }
 
-fn check_axis(axis: &[f64; 3], path: &KeyPath, _: RotationScope, check: &mut Check) {
+/// Checks that an axis has a direction.
+pub(crate) fn check_axis<S>(axis: &[f64; 3], path: &KeyPath, _: S, check: &mut Check) {
     let right = axis.iter().any(|&x| x != 0.0) && axis.iter().all(|x| x.is_finite());
     check.within(right, path.key("axis"), "zero", "allowed: a nonzero vector");
 }

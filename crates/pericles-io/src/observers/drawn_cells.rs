@@ -10,6 +10,7 @@ use pericles_mesh::CellKind;
 
 use super::cell_mesh::CellMesh;
 use super::motion::{GradientFit, Matrix, Motion};
+use crate::numbering::points_by_number;
 use crate::picture::{Polygon, Polygons};
 use crate::vtk::VtuCells;
 
@@ -56,10 +57,7 @@ impl DrawnCells {
         mesh: &CellMesh,
         cuts: impl Fn(Point, Point) -> bool,
     ) -> Self {
-        let mut of_number = vec![0; cloud.len()];
-        for i in 0..cloud.len() {
-            of_number[cloud.user_number(i)] = i as u32;
-        }
+        let of_number = points_by_number(cloud);
         let count = mesh.nodes.len() / 3;
         let node = |k: usize| std::array::from_fn(|c| mesh.nodes[c * count + k]);
         let mut cells = VtuCells::default();
@@ -67,7 +65,7 @@ impl DrawnCells {
         let mut has_cell = vec![false; cloud.len()];
         let mut meeting = vec![0; count];
         for (cell, &number) in mesh.points.iter().enumerate() {
-            let Some(kind) = kind_of(mesh.cells.vtk_type(cell)) else {
+            let Some(kind) = CellKind::of_vtk(mesh.cells.vtk_type(cell)) else {
                 continue;
             };
             if kind.dimension() != cloud.dimension() {
@@ -345,19 +343,6 @@ impl DeformedCells<'_, '_> {
         }
         place
     }
-}
-
-/// Returns the type of a cell of VTK.
-fn kind_of(vtk_type: u8) -> Option<CellKind> {
-    Some(match vtk_type {
-        5 => CellKind::Triangle,
-        9 => CellKind::Quadrilateral,
-        10 => CellKind::Tetrahedron,
-        12 => CellKind::Hexahedron,
-        13 => CellKind::Wedge,
-        14 => CellKind::Pyramid,
-        _ => return None,
-    })
 }
 
 #[cfg(test)]

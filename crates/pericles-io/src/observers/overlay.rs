@@ -8,6 +8,7 @@ use pericles::space::{Point, PointCloud};
 
 use super::cell_mesh::CellMesh;
 use super::motion::Motion;
+use crate::numbering::points_by_number;
 
 /// Lines on a body.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -250,10 +251,7 @@ fn foot(x: Point, from: Point, to: Point) -> Point {
 /// not of the first class.
 fn interfaces(cloud: &PointCloud, mesh: &CellMesh, class: &[u32]) -> Vec<Vec<Carried>> {
     let nodes = mesh.nodes.len() / 3;
-    let mut of_number = vec![0; cloud.len()];
-    for i in 0..cloud.len() {
-        of_number[cloud.user_number(i)] = i as u32;
-    }
+    let of_number = points_by_number(cloud);
     let place =
         |node: u32| -> Point { std::array::from_fn(|c| mesh.nodes[c * nodes + node as usize]) };
     let edge = |(a, b): (u32, u32), points: [u32; 2]| -> Vec<Carried> {

@@ -19,7 +19,7 @@ use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::rejection::{at, at_path};
 use super::resources::Resources;
-use super::rotation::{UNIT, matrix, product, times, upright};
+use super::rotation::{UNIT, product, times, upright};
 
 /// The constants of the materials: the body's material and the others in the order of the deck.
 pub(super) type AllConstants<'a> = (Option<&'a MaterialConstants>, &'a [MaterialConstants]);
@@ -145,7 +145,10 @@ impl Assembler<'_> {
         resources: &Resources<'_>,
         warnings: &mut Vec<ModelWarning>,
     ) -> Result<(Shape, Pose), BuildError> {
-        let turned = impactor.rotation.as_ref().map_or(UNIT, matrix);
+        let turned = impactor
+            .rotation
+            .as_ref()
+            .map_or(UNIT, |rotation| rotation.matrix());
         let (shape, frame, middle) = match &impactor.shape {
             ImpactorShape::Ball { radius } => (Shape::Ball { radius: *radius }, UNIT, ORIGIN),
             ImpactorShape::Box { size } => {

@@ -8,9 +8,6 @@ use pericles_mesh::{CellKind, MeshPoints, PointSet, RawMesh, SetKind};
 
 use super::rotation::{Matrix, times};
 
-/// VTK's type of a cell that is a single node.
-const VERTEX: u8 = 1;
-
 /// The position of a mesh in a body of several pieces.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Placement {
@@ -133,16 +130,7 @@ impl MeshCells {
         let placed = |x: &Point| body.placement.moved(x.map(|x| x * body.unit));
         self.nodes.extend(body.mesh.nodes.iter().map(placed));
         for &cell in &body.points.cells {
-            let kind = match body.mesh.cells.kind(cell as usize) {
-                CellKind::Point => VERTEX,
-                CellKind::Line => 3,
-                CellKind::Triangle => 5,
-                CellKind::Quadrilateral => 9,
-                CellKind::Tetrahedron => 10,
-                CellKind::Hexahedron => 12,
-                CellKind::Wedge => 13,
-                CellKind::Pyramid => 14,
-            };
+            let kind = body.mesh.cells.kind(cell as usize).vtk();
             let corners = body.mesh.cells.corners(cell as usize).iter();
             let corners: Vec<u32> = corners.map(|corner| start + corner).collect();
             self.cells.push(kind, &corners);
@@ -156,7 +144,8 @@ impl MeshCells {
     fn add_points(&mut self, places: &[Point]) {
         let next = self.points.last().map_or(0, |last| *last as usize + 1);
         for (number, place) in places.iter().enumerate().skip(next) {
-            self.cells.push(VERTEX, &[self.nodes.len() as u32]);
+            self.cells
+                .push(CellKind::Point.vtk(), &[self.nodes.len() as u32]);
             self.nodes.push(*place);
             self.points.push(number as u32);
         }

@@ -9,7 +9,6 @@ use super::mesh_body::{MeshBody, Meshes, Placement};
 use super::points::BodyPoints;
 use super::rejection::{at, at_path};
 use super::resources::Resources;
-use super::rotation::matrix;
 
 /// Distance of points of different pieces, in mean cell sizes, below which the pieces overlap.
 const CLOSEST: f64 = 0.5;
@@ -147,7 +146,7 @@ fn place(piece: &Piece, made: BodyPoints) -> Placed {
             placement.moved(std::array::from_fn(|c| 0.5 * (bounds[0][c] + bounds[1][c])))
         };
         let centre = rotation.centre.unwrap_or_else(middle);
-        (matrix(rotation), centre)
+        (rotation.matrix(), centre)
     });
     let mut meshes = made.meshes;
     for mesh in &mut meshes.all {

@@ -7,23 +7,6 @@ pub(super) type Matrix = [[f64; 3]; 3];
 
 pub(super) const UNIT: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// Returns the matrix of a rotation (formula of Rodrigues).
-pub(super) fn matrix(rotation: &Rotation) -> Matrix {
-    let length = rotation.axis.iter().map(|a| a * a).sum::<f64>().sqrt();
-    let a = rotation.axis.map(|entry| entry / length);
-    let (sin, cos) = rotation.angle.sin_cos();
-    std::array::from_fn(|r| {
-        std::array::from_fn(|c| {
-            let across = match (3 + c - r) % 3 {
-                0 => cos,
-                1 => -sin * a[3 - r - c],
-                _ => sin * a[3 - r - c],
-            };
-            across + (1.0 - cos) * a[r] * a[c]
-        })
-    })
-}
-
 /// Returns a rotation that maps the z axis to a direction.
 pub(super) fn upright(direction: [f64; 3]) -> Matrix {
     let length = direction.iter().map(|a| a * a).sum::<f64>().sqrt();
@@ -33,11 +16,12 @@ pub(super) fn upright(direction: [f64; 3]) -> Matrix {
         // About x, by half a turn for −z.
         return [[1.0, 0.0, 0.0], [0.0, z, 0.0], [0.0, 0.0, z]];
     }
-    matrix(&Rotation {
+    Rotation {
         angle: across.atan2(z),
         axis: [-y, x, 0.0],
         centre: None,
-    })
+    }
+    .matrix()
 }
 
 /// Returns the product of a matrix and a vector.
@@ -61,7 +45,7 @@ mod tests {
             axis: [0.0, 0.0, 2.0],
             centre: None,
         };
-        let turned = times(&matrix(&quarter), [1.0, 0.0, 3.0]);
+        let turned = times(&quarter.matrix(), [1.0, 0.0, 3.0]);
         let expected = [0.0, 1.0, 3.0];
         assert!((0..3).all(|c| (turned[c] - expected[c]).abs() < 1e-15));
         for direction in [
