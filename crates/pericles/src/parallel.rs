@@ -177,7 +177,7 @@ impl<const D: usize, S: Send> Division<'_, D, S> {
             let middle = states.len() / 2;
             let (low, high) = cut(out, (self.first)(part + middle) - (self.first)(part));
             let (low_states, high_states) = states.split_at_mut(middle);
-            rayon::join(
+            join(
                 || self.run(part, low, low_states),
                 || self.run(part + middle, high, high_states),
             );
@@ -193,6 +193,19 @@ impl<const D: usize, S: Send> Division<'_, D, S> {
             out = rest;
         }
     }
+}
+
+/// Calls two functions, in parallel if another thread is free.
+///
+/// Unlike `rayon::join`, which it calls, its code is compiled once and not for every pair of functions.
+pub fn join(a: impl FnOnce() + Send, b: impl FnOnce() + Send) {
+    fn both(a: &mut (dyn FnMut() + Send), b: &mut (dyn FnMut() + Send)) {
+        rayon::join(a, b);
+    }
+    let (mut a, mut b) = (Some(a), Some(b));
+    both(&mut || a.take().into_iter().for_each(|a| a()), &mut || {
+        b.take().into_iter().for_each(|b| b())
+    });
 }
 
 /// Cuts all components after a number of points.
@@ -231,7 +244,7 @@ pub fn for_each_chunk_of<T: Send>(
             let blocks = entries.len().div_ceil(BLOCK);
             let middle = (blocks / 2) * BLOCK;
             let (low, high) = entries.split_at_mut(middle);
-            rayon::join(
+            join(
                 || divide(first, low, length, work),
                 || divide(first + middle, high, length, work),
             );
@@ -299,7 +312,7 @@ fn in_set(
     let (low_points, high_points) = points.split_at(points.len() / 2);
     let middle = high_points[0] as usize;
     let (low, high) = entries.split_at_mut(middle - first);
-    rayon::join(
+    join(
         || in_set(first, low, low_points, work),
         || in_set(middle, high, high_points, work),
     );

@@ -270,7 +270,7 @@ impl GridBonds {
         let middle = tasks.start + tasks.len() / 2;
         let points = (self.chunks[middle * TASK].point - self.chunks[first].point) as usize;
         let (low, high) = out.split_at_mut(points);
-        rayon::join(
+        pericles::parallel::join(
             || self.split(work, (tasks.start..middle, least), low),
             || self.split(work, (middle..tasks.end, least), high),
         );

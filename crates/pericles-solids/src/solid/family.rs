@@ -225,7 +225,7 @@ impl<'a, const D: usize> Family<'a, D> {
         if bits == 0 {
             return;
         }
-        let (bond, others) = (self.bond::<F64x8>(batch), self.others(batch));
+        let (bond, others) = self.batch_in_lanes(batch);
         for lane in (0..LANES).filter(|lane| bits >> lane & 1 == 1) {
             visit(&SingleBond {
                 entry: (self.first + batch) * LANES + lane,
@@ -235,6 +235,12 @@ impl<'a, const D: usize> Family<'a, D> {
                 weight: bond.weight.0[lane],
             });
         }
+    }
+
+    /// Returns the bonds of a batch and the sites of their other ends; compiled once for all loops over single bonds.
+    #[inline(never)]
+    fn batch_in_lanes(&self, batch: usize) -> (Bond<F64x8, D>, [usize; LANES]) {
+        (self.bond(batch), self.others(batch))
     }
 
     /// The same bonds at another displacement.

@@ -331,7 +331,7 @@ impl<const D: usize> BoxConvolution<D> {
             field += 1;
             low
         });
-        rayon::join(
+        pericles::parallel::join(
             || self.planes_back::<F>(range.start..middle, first, pencils, on, low, finish),
             || self.planes_back::<F>(middle..range.end, split, pencils, on, high, finish),
         );

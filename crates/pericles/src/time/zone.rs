@@ -108,7 +108,7 @@ impl Zone {
             let first = self.runs[self.pieces[middle]].start as usize;
             let (low, high) = entries.split_at_mut(first - place.first);
             let beyond = Place { first, ..place };
-            rayon::join(
+            crate::parallel::join(
                 || self.split(from, middle, place, low, work),
                 || self.split(middle, to, beyond, high, work),
             );
