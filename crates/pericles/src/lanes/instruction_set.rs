@@ -94,7 +94,7 @@ macro_rules! for_each_instruction_set {
     ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident on lanes) => {
         $crate::for_each_instruction_set! {
             @compile
-            [$body::<$crate::lanes::F64x8, $($argument),*>]
+            [$body::<$crate::lanes::Baseline8, $($argument),*>]
             [$body::<$crate::lanes::doubles_x86::Avx2x8, $($argument),*>]
             [$body::<$crate::lanes::doubles_x86::Avx512x8, $($argument),*>]
             $(#[$doc])* $visibility fn $name [$($generics)*] <$($argument),*> ($($parameter : $type),*)
@@ -103,7 +103,7 @@ macro_rules! for_each_instruction_set {
     ($(#[$doc:meta])* $visibility:vis fn $name:ident [$($generics:tt)*] <$($argument:ident),*> ($($parameter:ident : $type:ty),* $(,)?) = $body:ident on floats) => {
         $crate::for_each_instruction_set! {
             @compile
-            [$body::<$crate::lanes::F32x16, $($argument),*>]
+            [$body::<$crate::lanes::Baseline16, $($argument),*>]
             [$body::<$crate::lanes::floats_x86::Avx2x16, $($argument),*>]
             [$body::<$crate::lanes::floats_x86::Avx512x16, $($argument),*>]
             $(#[$doc])* $visibility fn $name [$($generics)*] <$($argument),*> ($($parameter : $type),*)

@@ -18,13 +18,32 @@ mod doubles;
 #[doc(hidden)]
 pub mod doubles_x86;
 mod floats;
+// On x86-64 only the reference of a test.
+#[cfg(any(test, not(target_arch = "x86_64")))]
+mod floats_array;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod floats_x86;
 mod instruction_set;
 mod lanewise;
 mod numbers;
+#[cfg(target_arch = "x86_64")]
+mod sse2;
 
 pub use doubles::F64x8;
-pub(crate) use floats::{F32x16, FloatLanes};
+pub(crate) use floats::FloatLanes;
 pub use instruction_set::{InstructionSet, for_each_instruction_set};
 pub use numbers::{LANES, Lanes, Real, Row, Vector, dot, vector};
+
+/// Eight doubles of the baseline.
+#[cfg(target_arch = "x86_64")]
+#[doc(hidden)]
+pub type Baseline8 = sse2::Sse2x8;
+#[cfg(not(target_arch = "x86_64"))]
+#[doc(hidden)]
+pub type Baseline8 = F64x8;
+
+/// Sixteen floats of the baseline.
+#[cfg(target_arch = "x86_64")]
+pub(crate) type Baseline16 = sse2::Sse2x16;
+#[cfg(not(target_arch = "x86_64"))]
+pub(crate) type Baseline16 = floats_array::F32x16;

@@ -7,7 +7,7 @@
 use crate::lanes::LANES;
 #[cfg(target_arch = "x86_64")]
 use crate::lanes::floats_x86::{Avx2x16, Avx512x16};
-use crate::lanes::{F32x16, FloatLanes};
+use crate::lanes::{Baseline8, Baseline16, FloatLanes};
 use crate::lanes::{Lanes, Vector};
 
 /// Number type in memory.
@@ -215,7 +215,7 @@ macro_rules! two_chunks {
         }
     };
 }
-two_chunks!(F32x16, crate::lanes::F64x8);
+two_chunks!(Baseline16, Baseline8);
 #[cfg(target_arch = "x86_64")]
 two_chunks!(Avx2x16, crate::lanes::doubles_x86::Avx2x8);
 #[cfg(target_arch = "x86_64")]
