@@ -67,17 +67,6 @@ pub(crate) enum CliError {
         /// The problem.
         problem: String,
     },
-    /// Columns of a chart are in tables without common times.
-    #[error("the columns {columns} cannot be drawn over each other: {reason}")]
-    #[diagnostic(help(
-        "choose columns of one table, or of tables with the same schedule; [[output.quantity]] makes columns with the schedule of the history, such as crack_1_advance"
-    ))]
-    NoCommonTimes {
-        /// The columns and their tables.
-        columns: String,
-        /// The reason.
-        reason: String,
-    },
     /// The width of a picture is out of range.
     #[error("{problem}")]
     #[diagnostic(help("choose --width and --dpi accordingly"))]
@@ -207,7 +196,6 @@ impl CliError {
             | Self::NotStatic { .. }
             | Self::Surface { .. }
             | Self::Mesh { .. }
-            | Self::NoCommonTimes { .. }
             | Self::NoFields { .. } => Exit::Input,
             Self::UnknownShape { .. }
             | Self::NoVertex { .. }
@@ -250,6 +238,8 @@ pub(crate) fn exit_of(error: &RunError) -> Exit {
         | RunError::Checkpoint { .. }
         | RunError::InputChanged { .. }
         | RunError::NotExtended { .. }
+        | RunError::NoCommonTimes { .. }
+        | RunError::NoFit { .. }
         | RunError::NoRun { .. }
         | RunError::NoResults { .. }
         | RunError::Mesh(_)
@@ -333,6 +323,9 @@ impl<E: Borrow<RunError> + fmt::Debug> Diagnostic for OfRun<E> {
             RunError::InputChanged { .. } => {
                 Box::new("restore the original file, or start a new run")
             }
+            RunError::NoCommonTimes { .. } => Box::new(
+                "choose columns of one table, or of tables with the same schedule; [[output.quantity]] makes columns with the schedule of the history, such as crack_1_advance",
+            ),
             RunError::NoResults { .. } | RunError::NoRun { .. } => {
                 Box::new("give the output folder of `pericles run`, such as ./branching")
             }

@@ -51,7 +51,7 @@ impl Exit {
             Self::Usage => "invalid command line or unknown study",
             Self::Input => "invalid deck or other input",
             Self::Numerical => "numerical failure: the run became unstable",
-            Self::Comparison => "comparison failed (reproduce, diff)",
+            Self::Comparison => "comparison failed (reproduce, diff), or a fit has not converged",
             Self::Output => "output cannot be written: disk full, or folder exists or in use",
             Self::StoppedEarly => "stopped at the --wall-time limit, with a checkpoint",
             Self::Memory => "estimated memory exceeds --max-memory or the available memory",

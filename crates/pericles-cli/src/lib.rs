@@ -24,6 +24,7 @@ mod drawn;
 mod error;
 mod exit;
 mod export;
+mod fit;
 mod folder;
 mod frames;
 mod geodesics;
@@ -110,6 +111,7 @@ pub fn command(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Modes(args) => modes::modes(&args),
         Command::Export(args) => export::export(&args),
         Command::Converge(args) => converge::converge(&args),
+        Command::Fit(args) => fit::fit(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::New(args) => new::new(&args),
         Command::Schema(args) => schema::schema(&args),

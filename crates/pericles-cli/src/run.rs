@@ -1,5 +1,6 @@
 //! `run` and `resume`: run a simulation in its output folder until its end, a signal or the time limit.
 
+use pericles_run::fit::is_fit;
 use pericles_run::sequence::{Plan, Sequence, is_sequence};
 use pericles_run::sweep::is_sweep;
 use pericles_run::units::{count, quantity};
@@ -13,6 +14,7 @@ use crate::charts;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
+use crate::fit;
 use crate::folder::output_folder;
 use crate::given;
 use crate::processes::Processes;
@@ -81,6 +83,10 @@ pub(crate) fn resume(args: &ResumeArgs, processes: &Processes) -> Result<Exit, C
     if is_sweep(&args.dir) {
         processes.require_one()?;
         return sweep::resume(args);
+    }
+    if is_fit(&args.dir) {
+        processes.require_one()?;
+        return fit::resume(args);
     }
     let deadline = Deadline::from_now(args.options.limits.wall_time);
     let quiet = args.options.execution.quiet;

@@ -171,7 +171,7 @@ pub use output::{
     FragmentOutput, HistoryOutput, Output, Picture, PictureColours, PictureFormat, PictureLook,
     PointNumber, Precision, Profile,
 };
-pub use quantity::{metres, seconds};
+pub use quantity::{metres, seconds, si_unit};
 pub use region::Depth;
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
 pub use schema::{json_schema, reference, specimens, unit_of_key};

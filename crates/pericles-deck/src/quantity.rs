@@ -183,6 +183,21 @@ pub fn metres(text: &str) -> Option<f64> {
     measured(text, Quantity::Length)
 }
 
+/// Returns the SI unit of a unit as in decks and the factor that converts to it. None for other texts and for temperatures
+/// with their own zero.
+///
+/// ```
+/// assert_eq!(pericles_deck::si_unit("kN"), Some((1000.0, "N".into())));
+/// assert_eq!(pericles_deck::si_unit("furlong"), None);
+/// assert_eq!(pericles_deck::si_unit("°C"), None);
+/// ```
+pub fn si_unit(unit: &str) -> Option<(f64, String)> {
+    let of = |number: &str| units::parse(&format!("{number} {unit}")).ok();
+    let (zero, one) = (of("0")?, of("1")?);
+    let dimension = one.dimension.filter(|_| zero.value == 0.0)?;
+    Some((one.value, dimension.name()))
+}
+
 fn measured(text: &str, quantity: Quantity) -> Option<f64> {
     let measure = units::parse(text).ok()?;
     let dimension = measure.dimension.unwrap_or(quantity.dimension());

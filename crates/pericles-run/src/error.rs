@@ -84,6 +84,20 @@ pub enum RunError {
         /// The most similar name, and how to list all names.
         hint: String,
     },
+    /// Columns are in tables without common times.
+    #[error("the columns {columns} cannot be drawn over each other: {reason}")]
+    NoCommonTimes {
+        /// The columns and their tables.
+        columns: String,
+        /// The reason.
+        reason: String,
+    },
+    /// Keys of a deck cannot be fitted to a curve.
+    #[error("{reason}")]
+    NoFit {
+        /// Why, and what is allowed.
+        reason: String,
+    },
     /// A result file is damaged or was not written by Pericles.
     #[error("{} cannot be used: {reason}", path.display())]
     Damaged {

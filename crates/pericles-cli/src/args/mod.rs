@@ -1,6 +1,7 @@
 //! Command-line arguments.
 
 mod converge;
+mod fit;
 mod geometry;
 mod modes;
 mod plot;
@@ -17,6 +18,7 @@ use pericles_run::sweep::Axis;
 use crate::exit::Exit;
 
 pub(crate) use converge::ConvergeArgs;
+pub(crate) use fit::FitArgs;
 pub(crate) use geometry::{ExportArgs, ExportFormat, MeshArgs};
 pub(crate) use modes::ModesArgs;
 pub(crate) use plot::{Format, PlotArgs};
@@ -165,6 +167,15 @@ fixed and the spacing is horizon/m (m-convergence); with --dt, the grid is given
 without it, from three successive results. Results are written to ./<deck's name>-converge, then -2, -3, ..., or to the
 folder given by --out: convergence.csv and .png, and a folder per run. `pericles resume` continues the runs.")]
     Converge(ConvergeArgs),
+    /// Fit keys of a deck to a measured curve
+    #[command(after_help = "\
+  pericles fit beam.toml measured.csv --x CMOD --y load --keys material.youngs_modulus,material.fracture_energy
+  pericles fit beam.toml measured.csv --x CMOD --y load --keys 'material.tensile_strength=2 MPa:6 MPa'
+Least squares within bounds: the curve of each run is compared at the measured x. Derivatives are differences of runs, which
+are independent and use all cores. Results are written to ./<deck's name>-fit, then -2, -3, ..., or to the folder given by --out:
+fit.csv (values, standard errors and 95 % confidence intervals), curve.csv, fit.png, and a folder per run. `pericles resume`
+continues the fit. The exit status is 5 if the values still change after --runs runs.")]
+    Fit(FitArgs),
     /// Reproduce published results and compare
     #[command(after_help = "\
 The studies and their decks are built in. The exit status is 0 if every row with a tolerance passes, otherwise 5.")]

@@ -117,6 +117,13 @@ pub(super) fn tolerance(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "expected a number of at least 0".to_owned())
 }
 
+/// Parses a positive number.
+pub(super) fn positive(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok();
+    let number = number.filter(|number: &f64| *number > 0.0 && number.is_finite());
+    number.ok_or_else(|| "expected a number above 0".to_owned())
+}
+
 /// A positive length, as written and in metres.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Length {

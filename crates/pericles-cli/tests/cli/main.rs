@@ -8,6 +8,7 @@ mod contact;
 mod dispersion;
 mod examples;
 mod faults;
+mod fit;
 mod folder;
 mod formats;
 mod geodesics;

@@ -1,10 +1,9 @@
 //! Charts of scalars over the values of a sweep.
 
-use pericles_deck::unit_of_key;
+use pericles_deck::{Deck, unit_of_key};
 use pericles_io::{Axis as ChartAxis, Curve, LineChart};
 use serde_json::Value;
 
-use super::record::Member;
 use super::results::SweepResults;
 use crate::error::RunError;
 use crate::results::Results;
@@ -43,7 +42,7 @@ impl SweepResults {
             };
             let value;
             (value, unit) = source.of(&results)?;
-            let x = value_of(member, &axes[place].key)?;
+            let x = value_of(&member.deck.read()?, &axes[place].key);
             is_numeric &= x.is_some();
             let number = axes[place].values.iter();
             let number = number
@@ -91,9 +90,8 @@ struct Family {
     points: Vec<(Option<f64>, f64, f64)>,
 }
 
-/// Returns the value of a key in the deck of a run, in SI units; none if it is not a number.
-fn value_of(member: &Member, key: &str) -> Result<Option<f64>, RunError> {
-    let deck = member.deck.read()?;
+/// Returns the value of a key of a deck in SI units; none if it is not a number.
+pub(crate) fn value_of(deck: &Deck, key: &str) -> Option<f64> {
     let found = key.split('.').try_fold(deck.to_json(), |value, part| {
         let index: Option<usize> = part.parse().ok();
         match (value, index) {
@@ -101,5 +99,5 @@ fn value_of(member: &Member, key: &str) -> Result<Option<f64>, RunError> {
             _ => value.get(part),
         }
     });
-    Ok(found.and_then(Value::as_f64))
+    found.and_then(Value::as_f64)
 }

@@ -18,6 +18,9 @@ mod runner;
 mod table;
 
 pub use axis::Axis;
+pub(crate) use chart::value_of;
+pub(crate) use record::Member;
 pub use results::{SweepResults, is_sweep};
 pub use runner::{Plan, Settings, Sweep, SweepEnd, SweepEvent};
+pub(crate) use runner::{run_all, worst};
 pub use table::Table;

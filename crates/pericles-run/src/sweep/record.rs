@@ -19,13 +19,13 @@ pub(super) struct Record {
 }
 
 /// One combination of values.
-pub(super) struct Member {
+pub(crate) struct Member {
     /// The name of its folder.
-    pub(super) name: String,
-    /// One value per axis.
-    pub(super) values: Vec<String>,
+    pub(crate) name: String,
+    /// One value per key.
+    pub(crate) values: Vec<String>,
     /// The deck with these values.
-    pub(super) deck: DeckText,
+    pub(crate) deck: DeckText,
 }
 
 impl Record {

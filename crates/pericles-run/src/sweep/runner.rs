@@ -125,52 +125,19 @@ impl Sweep {
         cancel: &Cancel,
         tell: TellSweep<'_>,
     ) -> Result<SweepEnd, RunError> {
-        let cores = thread::available_parallelism().map_or(1, usize::from);
-        let at_once = (cores / settings.threads).clamp(1, self.sweep.members.len().max(1));
-        let means = Means {
-            caching: settings.means.caching.clone(),
-            memory: settings.means.memory / at_once as u64,
-            comm: settings.means.comm.clone(),
-        };
+        let members = &self.sweep.members;
         tell(SweepEvent::Begins {
-            runs: self.sweep.members.len(),
-            at_once,
+            runs: members.len(),
+            at_once: settings.at_once(members.len()),
             folder: self.folder.path(),
         });
-        let next = AtomicUsize::new(0);
-        let worker = || {
-            let mut worst = Ok(Ending::Finished);
-            while let Some(member) = self.sweep.members.get(next.fetch_add(1, Ordering::Relaxed)) {
-                if cancel.is_cancelled() {
-                    return Ok(Ending::Cancelled);
-                }
-                let path = self.folder.file(&member.name);
-                let from = self.sweep.record.from.as_deref();
-                let how = run_member(member, (from, &path), settings, &means, cancel, tell);
-                tell(SweepEvent::Ended {
-                    run: &member.name,
-                    how: &how,
-                });
-                // The first unfinished run determines the outcome.
-                if is_fine(&worst) {
-                    worst = how;
-                }
-            }
-            worst
-        };
-        let ends: Vec<Result<Ending, RunError>> = thread::scope(|scope| {
-            let workers: Vec<_> = (0..at_once).map(|_| scope.spawn(worker)).collect();
-            let joined = workers.into_iter().map(|worker| worker.join());
-            joined
-                .map(|end| end.unwrap_or_else(|panic| panic::resume_unwind(panic)))
-                .collect()
-        });
+        let from = self.sweep.record.from.as_deref();
+        let ends = run_all(members, (from, &self.folder), settings, cancel, tell);
         let table = self.sweep.table();
         table.write()?;
-        let trouble = ends.into_iter().find(|end| !is_fine(end));
         Ok(SweepEnd {
             table,
-            worst: trouble.unwrap_or(Ok(Ending::Finished)),
+            worst: worst(ends),
         })
     }
 
@@ -185,8 +152,65 @@ impl Sweep {
     }
 }
 
-fn is_fine(end: &Result<Ending, RunError>) -> bool {
-    matches!(end, Ok(Ending::Finished))
+impl Settings {
+    /// Returns the number of concurrent runs, of `runs` runs.
+    fn at_once(&self, runs: usize) -> usize {
+        let cores = thread::available_parallelism().map_or(1, usize::from);
+        (cores / self.threads).clamp(1, runs.max(1))
+    }
+}
+
+/// Runs all members that have not finished, and returns their outcomes in order.
+pub(crate) fn run_all(
+    members: &[Member],
+    (from, folder): (Option<&Path>, &OutputFolder),
+    settings: &Settings,
+    cancel: &Cancel,
+    tell: TellSweep<'_>,
+) -> Vec<Result<Ending, RunError>> {
+    let at_once = settings.at_once(members.len());
+    let means = Means {
+        caching: settings.means.caching.clone(),
+        memory: settings.means.memory / at_once as u64,
+        comm: settings.means.comm.clone(),
+    };
+    let next = AtomicUsize::new(0);
+    let worker = || {
+        let mut ends = Vec::new();
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            let Some(member) = members.get(number) else {
+                return ends;
+            };
+            if cancel.is_cancelled() {
+                ends.push((number, Ok(Ending::Cancelled)));
+                continue;
+            }
+            let path = folder.file(&member.name);
+            let how = run_member(member, (from, &path), settings, &means, cancel, tell);
+            tell(SweepEvent::Ended {
+                run: &member.name,
+                how: &how,
+            });
+            ends.push((number, how));
+        }
+    };
+    let mut ends: Vec<(usize, Result<Ending, RunError>)> = thread::scope(|scope| {
+        let workers: Vec<_> = (0..at_once).map(|_| scope.spawn(worker)).collect();
+        let joined = workers.into_iter().map(|worker| worker.join());
+        joined
+            .flat_map(|ends| ends.unwrap_or_else(|panic| panic::resume_unwind(panic)))
+            .collect()
+    });
+    ends.sort_by_key(|(number, _)| *number);
+    ends.into_iter().map(|(_, how)| how).collect()
+}
+
+/// Returns the outcome of the first run that has not finished; finished if all have.
+pub(crate) fn worst(ends: Vec<Result<Ending, RunError>>) -> Result<Ending, RunError> {
+    let mut ends = ends.into_iter();
+    let trouble = ends.find(|end| !matches!(end, Ok(Ending::Finished)));
+    trouble.unwrap_or(Ok(Ending::Finished))
 }
 
 /// Runs a member of the sweep on its own threads.
