@@ -18,7 +18,7 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::info;
 use crate::plot;
-use crate::time_axis::TimeAxis;
+use pericles_run::TimeAxis;
 
 /// Most pictures per field; of more, evenly spaced ones are shown.
 const MOST_PICTURES: usize = 6;

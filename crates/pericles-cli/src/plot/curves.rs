@@ -9,7 +9,7 @@ use crate::args::PlotArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::time_axis::TimeAxis;
+use pericles_run::TimeAxis;
 
 /// The column of times.
 const TIME: &str = "time";
