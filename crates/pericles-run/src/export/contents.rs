@@ -156,6 +156,8 @@ pub(super) struct TableData {
 pub(super) struct ColumnData {
     pub(super) name: String,
     pub(super) unit: String,
+    /// Whether all values are equal.
+    pub(super) constant: bool,
     /// f64.
     pub(super) block: u32,
 }

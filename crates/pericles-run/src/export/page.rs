@@ -369,13 +369,13 @@ impl Page<'_, '_> {
                 let time = self.block(&Block::of_f64(&thinned(time)))?;
                 let mut columns = Vec::new();
                 for (column, values) in rows.columns.iter().zip(&rows.values) {
-                    let changes = values.iter().any(|x| *x != values[0] && !x.is_nan());
-                    if ["step", "time"].contains(&column.name()) || !changes {
+                    if ["step", "time", "crack"].contains(&column.name()) {
                         continue;
                     }
                     columns.push(ColumnData {
                         name: format!("{part}{}", column.name()),
                         unit: column.unit().to_owned(),
+                        constant: !values.iter().any(|x| *x != values[0] && !x.is_nan()),
                         block: self.block(&Block::of_f64(&thinned(values)))?,
                     });
                 }

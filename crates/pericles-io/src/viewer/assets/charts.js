@@ -31,7 +31,8 @@ function offeredCharts() {
   const offered = [];
   for (const table of header.tables) {
     const groups = new Map();
-    for (const column of table.columns) {
+    const columns = table.columns.filter((column) => !column.constant);
+    for (const column of columns) {
       // Dimensionless columns have no common scale.
       const key = column.unit || column.name;
       const group = groups.get(key) || [];
@@ -40,13 +41,12 @@ function offeredCharts() {
     }
     for (const group of groups.values()) {
       for (let k = 0; k < group.length; k += MOST_CURVES) {
-        const columns = group.slice(k, k + MOST_CURVES);
-        const name = commonWords(columns.map((one) => one.name), columns[0].unit);
-        const several = columns.length > 1;
-        offered.push({ table, columns, name, label: `${table.name}: ${name}${several ? ` (${columns.length} curves)` : ""}` });
+        const some = group.slice(k, k + MOST_CURVES);
+        const name = commonWords(some.map((one) => one.name), some[0].unit);
+        offered.push({ table, columns: some, name, label: `${table.name}: ${name}${some.length > 1 ? ` (${some.length} curves)` : ""}` });
       }
     }
-    for (const column of table.columns) {
+    for (const column of columns) {
       if (!offered.some((one) => one.columns.length === 1 && one.columns[0] === column)) {
         offered.push({ table, columns: [column], name: words(column.name), label: `${table.name}: ${words(column.name)}` });
       }

@@ -314,7 +314,6 @@ function presentTips() {
     let row = -1;
     tip.time.forEach((t, k) => { if (t <= time * (1 + 1e-9)) row = k; });
     if (row < 0) continue;
-    // A coordinate that never changes has no column.
     const place = [0, 1, 2].map((c) => (tip.places[c] ? tip.places[c][row] - header.origin[c] : 0));
     if (!place.every(isFinite)) continue;
     let nearest = 0, least = Infinity;
@@ -322,7 +321,7 @@ function presentTips() {
       const square = [0, 1, 2].reduce((sum, c) => sum + (shape.x[c][i] - place[c]) ** 2, 0);
       if (square < least) [nearest, least] = [i, square];
     }
-    found.push(place.map((x, c) => x + drawn.places[3 * nearest + c] - shape.x[c][nearest]));
+    if (!viewer.hidden[nearest]) found.push(place.map((x, c) => x + drawn.places[3 * nearest + c] - shape.x[c][nearest]));
   }
   return found;
 }

@@ -17,6 +17,8 @@ const FACETS = {
   13: [[0, 1, 4, 3], [1, 2, 5, 4], [0, 3, 5, 2], [0, 2, 1], [3, 4, 5]],
   12: [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [0, 4, 7, 3], [0, 3, 2, 1], [4, 5, 6, 7]],
 };
+/** Corners of plane cells in turn. */
+const AROUND = { 5: [0, 1, 2], 9: [0, 1, 2, 3] };
 const CORNERS = { 5: 3, 9: 4, 10: 4, 14: 5, 13: 6, 12: 8 };
 
 class Shape {
@@ -141,30 +143,60 @@ class Cells {
   /** Returns the vertices of triangles with the points whose colours they have: all plane cells, the visible facets of solids. */
   faces(damage, hidden) {
     const open = this.openSides(damage);
-    this.fitGradients(open);
-    this.moveNodes(open);
-    const solid = header.dimension === 3;
-    const positions = new Growing(Float32Array), points = new Growing(Uint32Array);
-    const corners = [];
-    for (let cell = 0; cell < this.count; cell++) {
-      const point = this.points[cell];
-      if (hidden[point]) continue;
+    const visible = this.visible(open, hidden);
+    const needed = this.needed(visible);
+    this.fitGradients(open, needed);
+    this.moveNodes(open, needed);
+    let count = 0;
+    for (const [cell, facet] of visible) count += this.cornersOf(cell, facet).length - 2;
+    const positions = new Float32Array(9 * count), points = new Uint32Array(3 * count);
+    let vertex = 0;
+    for (const [cell, facet] of visible) {
       const start = this.start[cell];
-      const facets = FACETS[this.types[cell]];
-      for (let f = 0; f < (solid ? facets.length : 1); f++) {
-        const side = this.first[cell] + f;
-        const across = this.across[side];
-        if (solid && !open[side] && !hidden[this.points[across]]) continue;
-        const facet = solid ? facets[f] : [...Array(CORNERS[this.types[cell]]).keys()];
-        corners.length = 0;
-        for (const corner of facet) corners.push(this.nodePlace(cell, this.corners[start + corner], open));
-        for (let k = 2; k < corners.length; k++) {
-          positions.push(corners[0], corners[k - 1], corners[k]);
-          points.push([point], [point], [point]);
+      const places = this.cornersOf(cell, facet).map((corner) => this.nodePlace(cell, this.corners[start + corner], open));
+      for (let k = 2; k < places.length; k++) {
+        for (const place of [places[0], places[k - 1], places[k]]) {
+          positions.set(place, 3 * vertex);
+          points[vertex++] = this.points[cell];
         }
       }
     }
-    return { positions: positions.array(), points: points.array() };
+    return { positions, points };
+  }
+
+  /** Returns the corners of a facet of a solid cell, or of a plane cell. */
+  cornersOf(cell, facet) {
+    return header.dimension === 3 ? FACETS[this.types[cell]][facet] : AROUND[this.types[cell]];
+  }
+
+  /** Returns the cells and facets that can be seen: plane cells, and facets of solids without a cell beyond them. */
+  visible(open, hidden) {
+    const visible = [];
+    for (let cell = 0; cell < this.count; cell++) {
+      if (hidden[this.points[cell]]) continue;
+      if (header.dimension < 3) {
+        visible.push([cell, 0]);
+        continue;
+      }
+      for (let side = this.first[cell]; side < this.first[cell + 1]; side++) {
+        if (open[side] || hidden[this.points[this.across[side]]]) visible.push([cell, side - this.first[cell]]);
+      }
+    }
+    return visible;
+  }
+
+  /** Returns flags of the cells that determine the positions of visible nodes and of lines. */
+  needed(visible) {
+    const nodes = new Uint8Array(this.nodeCount);
+    for (const [cell, facet] of visible) {
+      for (const corner of this.cornersOf(cell, facet)) nodes[this.corners[this.start[cell] + corner]] = 1;
+    }
+    const needed = new Uint8Array(this.count);
+    for (let cell = 0; cell < this.count; cell++) {
+      for (let k = this.start[cell]; k < this.start[cell + 1] && !needed[cell]; k++) needed[cell] = nodes[this.corners[k]];
+    }
+    for (const point of this.shape.lines.points) if (this.ofPoint[point] !== OUTSIDE) needed[this.ofPoint[point]] = 1;
+    return needed;
   }
 
   /** Returns for each side whether the cells there are drawn apart. */
@@ -197,10 +229,11 @@ class Cells {
   }
 
   /** Fits the displacement gradient of each cell to the neighbours that are not drawn apart, by least squares. */
-  fitGradients(open) {
+  fitGradients(open, needed) {
     const { x, u } = this.shape;
     const a = new Float64Array(9), b = new Float64Array(9), arm = [0, 0, 0], moved = [0, 0, 0];
     for (let cell = 0; cell < this.count; cell++) {
+      if (!needed[cell]) continue;
       a.fill(0);
       b.fill(0);
       const i = this.points[cell];
@@ -250,17 +283,19 @@ class Cells {
     }
   }
 
-  /** Computes the positions of all nodes whose cells hold together. */
-  moveNodes(open) {
+  /** Computes the positions of the nodes of some cells, for nodes whose cells hold together. */
+  moveNodes(open, needed) {
     this.torn = new Uint8Array(this.nodeCount);
     this.moved = new Float64Array(3 * this.nodeCount);
     for (let cell = 0; cell < this.count; cell++) {
+      if (!needed[cell]) continue;
       const start = this.start[cell];
       const facets = FACETS[this.types[cell]];
-      facets.forEach((facet, f) => {
+      for (let f = 0; f < facets.length; f++) {
         const side = this.first[cell] + f;
-        if (open[side] && this.across[side] !== OUTSIDE) facet.forEach((corner) => (this.torn[this.corners[start + corner]] = 1));
-      });
+        if (!open[side] || this.across[side] === OUTSIDE) continue;
+        for (const corner of facets[f]) this.torn[this.corners[start + corner]] = 1;
+      }
       for (let k = start; k < this.start[cell + 1]; k++) this.addPlace(cell, this.corners[k], this.moved, 3 * this.corners[k]);
     }
     for (let node = 0; node < this.nodeCount; node++) {
@@ -283,29 +318,5 @@ class Cells {
       this.addPlace(member, node, sum, 0);
     }
     return sum.map((v) => v / group.length);
-  }
-}
-
-/** A typed array that grows. */
-class Growing {
-  constructor(type) {
-    this.type = type;
-    this.values = new type(1 << 14);
-    this.length = 0;
-  }
-
-  push(...parts) {
-    for (const part of parts) {
-      if (this.length + part.length > this.values.length) {
-        const larger = new this.type(2 * this.values.length);
-        larger.set(this.values);
-        this.values = larger;
-      }
-      for (let k = 0; k < part.length; k++) this.values[this.length++] = part[k];
-    }
-  }
-
-  array() {
-    return this.values.subarray(0, this.length);
   }
 }
