@@ -138,8 +138,8 @@ def test_fields_are_shown_in_the_browser_and_in_notebooks(plate, monkeypatch):
     assert "Damage" in view.path.read_text() and "Velocity" not in view.path.read_text()
     frame = view._repr_html_()
     assert frame.startswith("<iframe sandbox=") and "height: 400px" in frame and "<script" not in frame
-    with pytest.raises(pc.PericlesError, match='no field "dmage"'):
-        result.view(fields=["dmage"])
+    with pytest.raises(pc.PericlesError, match='no field "damages"'):
+        result.view(fields=["damages"])
     with pytest.raises(pc.PericlesError, match="every is 0"):
         result.view(every=0)
     memory = pc.Deck.from_dict(plate).build().simulation(keep=["damage"]).run().result()

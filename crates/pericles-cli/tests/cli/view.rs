@@ -266,9 +266,10 @@ fn output_times_and_fields_are_selected_and_omissions_are_reported() {
     let table = pericles_io::read_csv(folder.join("a/fields-csv/fields_000001.csv")).unwrap();
     assert!(table.column("Displacement_x").is_some() && table.column("Damage").is_none());
 
-    let (status, message) = fail(folder, "view a --no-open --fields Dmage");
+    let (status, message) = fail(folder, "view a --no-open --fields Damages");
     assert!(
-        message.contains("there is no field \"Dmage\"") && message.contains("did you mean Damage?"),
+        message.contains("there is no field \"Damages\"")
+            && message.contains("did you mean Damage?"),
         "{message}"
     );
     assert_eq!(status, 2);
