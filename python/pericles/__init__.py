@@ -51,7 +51,7 @@ from ._functions import (
 from ._functions import open_ as open
 from ._model import Model
 from ._pericles import __version__
-from ._result import Record, Result, Table
+from ._result import Record, Result, Table, View
 from ._simulation import STOP, Simulation, Snapshot
 from ._sweep import SweepPoint, sweep
 
@@ -78,6 +78,7 @@ __all__ = [
     "Table",
     "TooLargeError",
     "UnstableError",
+    "View",
     "__version__",
     "check",
     "diff",

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -466,6 +466,43 @@ class Result:
             return np.broadcast_to(2 * np.asarray(self.field("radius"))[:, None], shape)
         return np.full(shape, spacing)
 
+    def view(
+        self,
+        *,
+        path: str | os.PathLike[str] | None = None,
+        every: int | None = None,
+        fields: Iterable[str] = (),
+        height: int = 650,
+    ) -> View:
+        """Show the fields over time in the browser, or in the notebook.
+
+        The page is one file, ``fields.html`` in the output folder, which needs no other files and no network. Values are
+        rounded to 16 bits.
+
+        Parameters
+        ----------
+        path : path, optional
+            The file to write.
+        every : int, optional
+            Use every n-th output, and the last one; by default all, of series larger than 200 MB fewer.
+        fields : iterable of str
+            The fields; by default all.
+        height : int
+            Height in the notebook, in pixels.
+        """
+        if self._folder is None:
+            raise PericlesError("results in memory cannot be viewed; give an output folder, such as run(deck, out=\"results\")")
+        if not any((self._folder / name).exists() for name in ("fields.pvd", "fields.exo", "fields.vtkhdf")):
+            raise PericlesError("the run has no outputs of fields; request them under [output] of the deck")
+        if every is not None and every < 1:
+            raise PericlesError(f"every is {every}; allowed: an integer of at least 1")
+        target = Path(path) if path is not None else self._folder / "fields.html"
+        notes = _pericles.write_page(self._folder, target, every, list(fields))
+        view = View(target, notes, height)
+        if not _in_notebook():
+            view.open()
+        return view
+
     def __reduce__(self) -> Any:
         if self._folder is None:
             raise PericlesError("results in memory cannot be pickled; give an output folder, whose results are pickled by path")
@@ -482,6 +519,54 @@ class Result:
         title = f"Result {self._folder or 'in memory'}: {self._report.get('status')}"
         audit = {**(self._report.get("audit") or {}), "warnings": self.warnings}
         return table_html(title, audit)
+
+
+class View:
+    """A page that shows the fields of a run.
+
+    Attributes
+    ----------
+    path : Path
+        The file.
+    notes : list of str
+        What was left out of the page.
+    """
+
+    #: Larger pages are not copied into notebooks, bytes.
+    _LARGEST = 100_000_000
+
+    def __init__(self, path: Path, notes: list[str], height: int) -> None:
+        self.path = path
+        self.notes = notes
+        self._height = height
+
+    def open(self) -> bool:
+        """Open the page in the browser; return whether there is one."""
+        import webbrowser
+
+        return webbrowser.open(self.path.absolute().as_uri())
+
+    def _repr_html_(self) -> str:
+        import html
+
+        size = self.path.stat().st_size
+        if size > self._LARGEST:
+            return f"<p>{html.escape(str(self.path))} has {size / 1e6:.0f} MB: too large for a notebook. Open it in a browser.</p>"
+        page = html.escape(self.path.read_text(encoding="utf-8"), quote=True)
+        style = f"width: 100%; height: {self._height}px; border: 1px solid #ccc"
+        return f'<iframe sandbox="allow-scripts allow-downloads" style="{style}" srcdoc="{page}"></iframe>'
+
+    def __repr__(self) -> str:
+        return f"<pericles.View {self.path}>"
+
+
+def _in_notebook() -> bool:
+    """Return whether a notebook shows the value of a cell."""
+    import sys
+
+    module = sys.modules.get("IPython")
+    shell = module.get_ipython() if module is not None else None
+    return getattr(shell, "kernel", None) is not None
 
 
 #: Signs of the corners of a line (2), square (4) or cube (8), in the order of VTK.

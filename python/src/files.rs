@@ -1,6 +1,7 @@
 //! Results in files, and the command line.
 
 use std::ffi::OsString;
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -8,7 +9,7 @@ use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pericles_io::{FieldData, read_csv, read_fields};
 use pericles_run::diff::Comparison;
-use pericles_run::{Results, machine};
+use pericles_run::{ExportFormat, Results, Selection, export, machine};
 use pyo3::prelude::*;
 
 use crate::arrays::{Block, TableColumn};
@@ -112,6 +113,30 @@ pub fn compare(py: Python<'_>, a: PathBuf, b: PathBuf, tolerance: f64) -> PyResu
             let (a, b) = (Results::open(&a)?, Results::open(&b)?);
             let comparison = Comparison::of(&a, &b, tolerance)?;
             Ok(serde_json::to_string(&comparison)?)
+        };
+        made().map_err(errors::of_run)
+    })
+}
+
+/// Writes the page of a run; returns what was left out, in sentences.
+#[pyfunction]
+pub fn write_page(
+    py: Python<'_>,
+    folder: PathBuf,
+    path: PathBuf,
+    every: Option<NonZeroUsize>,
+    fields: Vec<String>,
+) -> PyResult<Vec<String>> {
+    waiting(py, move || {
+        let made = || {
+            let results = Results::open(&folder)?;
+            let selection = Selection {
+                every,
+                size: None,
+                fields,
+            };
+            let exported = export(&results, ExportFormat::Html, &selection, &path)?;
+            Ok(exported.notes)
         };
         made().map_err(errors::of_run)
     })

@@ -27,7 +27,7 @@ mod _pericles {
     #[pymodule_export]
     use crate::entry::{after_fork, set_threads, threads};
     #[pymodule_export]
-    use crate::files::{OutputFile, command_line, compare, read_table};
+    use crate::files::{OutputFile, command_line, compare, read_table, write_page};
     #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]

@@ -127,6 +127,26 @@ def test_fields_go_to_pyvista_and_meshio(plate):
     assert np.array_equal(folder.field("displacement"), memory.field("displacement"))
 
 
+def test_fields_are_shown_in_the_browser_and_in_notebooks(plate, monkeypatch):
+    opened = []
+    monkeypatch.setattr("webbrowser.open", lambda address: opened.append(address) or True)
+    plate["output"] = {"fields": {"count": 3}}
+    result = pc.run(plate, out="a")
+    view = result.view(every=2, fields=["damage"], height=400)
+    assert opened == [(result.folder / "fields.html").absolute().as_uri()]
+    assert view.notes == ["3 of 4 output times are shown."]
+    assert "Damage" in view.path.read_text() and "Velocity" not in view.path.read_text()
+    frame = view._repr_html_()
+    assert frame.startswith("<iframe sandbox=") and "height: 400px" in frame and "<script" not in frame
+    with pytest.raises(pc.PericlesError, match='no field "damages"'):
+        result.view(fields=["damages"])
+    with pytest.raises(pc.PericlesError, match="every is 0"):
+        result.view(every=0)
+    memory = pc.Deck.from_dict(plate).build().simulation(keep=["damage"]).run().result()
+    with pytest.raises(pc.PericlesError, match="in memory"):
+        memory.view()
+
+
 def test_the_output_folder_is_not_replaced(bar):
     pc.run(bar, out="a")
     with pytest.raises(pc.OutputError, match="already exists"):

@@ -5,7 +5,7 @@ use std::path::Path;
 use pericles_io::observers::profile_chart;
 use pericles_io::{Axis, Curve, IoError, LineChart, read_csv};
 
-use crate::time_axis::TimeAxis;
+use pericles_run::TimeAxis;
 
 /// Most curves per chart: more are not distinguishable.
 const MOST_CURVES: usize = 8;

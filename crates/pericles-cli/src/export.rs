@@ -1,7 +1,9 @@
 //! `export`: convert the fields of a run to another format.
 
+use std::path::Path;
+
 use pericles_run::units::count;
-use pericles_run::{ExportFormat, Results};
+use pericles_run::{ExportFormat, Exported, Results};
 
 use crate::args::{self, ExportArgs};
 use crate::console;
@@ -24,16 +26,26 @@ pub(crate) fn export(args: &ExportArgs) -> Result<Exit, CliError> {
         args::ExportFormat::Vtkhdf => (ExportFormat::VtkHdf, "fields.vtkhdf"),
         args::ExportFormat::Csv => (ExportFormat::Csv, "fields-csv"),
         args::ExportFormat::Npz => (ExportFormat::Npz, "fields.npz"),
+        args::ExportFormat::Html => (ExportFormat::Html, "fields.html"),
     };
     let path = args.out.clone().unwrap_or_else(|| args.dir.join(name));
     if path.symlink_metadata().is_ok() {
         return Err(CliError::FileExists { path });
     }
-    let outputs = pericles_run::export(&results, format, &path)?;
+    let exported = pericles_run::export(&results, format, &args.selection.selection(), &path)?;
+    report(&exported, &path)?;
+    Ok(Exit::Done)
+}
+
+/// Prints the path, the number of output times and what was left out.
+pub(crate) fn report(exported: &Exported, path: &Path) -> Result<(), CliError> {
+    for note in &exported.notes {
+        console::note(format_args!("{note}"));
+    }
     console::print(format_args!(
         "{}: {} output times",
         path.display(),
-        count(outputs as u64)
+        count(exported.outputs as u64)
     ))?;
-    Ok(Exit::Done)
+    Ok(())
 }

@@ -11,7 +11,7 @@ use crate::args::InfoArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::time_axis::TimeAxis;
+use pericles_run::TimeAxis;
 
 /// Describes the results of a run.
 ///

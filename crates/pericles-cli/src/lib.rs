@@ -3,7 +3,7 @@
 //!
 //! Each command is one module, which reads its arguments, calls a library and prints the results. `run`, `check`,
 //! `modes`, `dispersion` and `resume` act on decks and output folders; `sweep` and `converge` on one deck with
-//! several values; `info`, `plot`, `diff`, `export` and `report` (`page`) on results; `reproduce` on the built-in
+//! several values; `info`, `plot`, `view`, `diff`, `export` and `report` (`page`) on results; `reproduce` on the built-in
 //! studies; `geodesics` on surfaces; `mesh` on mesh files; `bench` on fixed bodies. The commands share the console,
 //! the display of a run (`screen`), signal handling, the processes that share a run
 //! (`processes`), and errors, each of which leads to one message and one exit
@@ -46,7 +46,7 @@ mod signals;
 mod summary;
 mod sweep;
 mod text_chart;
-mod time_axis;
+mod view;
 
 use std::ffi::OsString;
 
@@ -110,6 +110,7 @@ pub fn command(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Mesh(args) => mesh::mesh(&args),
         Command::Modes(args) => modes::modes(&args),
         Command::Export(args) => export::export(&args),
+        Command::View(args) => view::view(&args),
         Command::Converge(args) => converge::converge(&args),
         Command::Fit(args) => fit::fit(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),

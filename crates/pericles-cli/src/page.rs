@@ -18,7 +18,7 @@ use crate::error::CliError;
 use crate::exit::Exit;
 use crate::info;
 use crate::plot;
-use crate::time_axis::TimeAxis;
+use pericles_run::TimeAxis;
 
 /// Most pictures per field; of more, evenly spaced ones are shown.
 const MOST_PICTURES: usize = 6;
@@ -30,9 +30,9 @@ img { max-width: 100%; } figure { margin: 1rem 0; } figcaption { color: #555; }
 .thumbnails { display: grid; grid-template-columns: repeat(3, 1fr); gap: 1rem; } .thumbnails figure { margin: 0; font-size: 14px; }
 table { border-collapse: collapse; } td, th { padding: .15rem 1rem .15rem 0; vertical-align: top; text-align: left; }
 td:first-child { color: #555; white-space: nowrap; } .runs td { white-space: nowrap; }
-nav a { margin-right: 1rem; } .wide { overflow-x: auto; }
+nav a { margin-right: 1rem; } .wide { overflow-x: auto; } .runs { margin-bottom: 1rem; } .runs th { vertical-align: bottom; }
 pre { background: #f6f6f6; padding: 1rem; overflow-x: auto; font-size: 14px; } .warning { background: #fff4d6; padding: .5rem 1rem; margin: .5rem 0; }
-@media print { body { max-width: none; margin: 0; font-size: 11px; } nav { display: none; } figure, tr, .warning { break-inside: avoid; } h2 { break-after: avoid; } pre { white-space: pre-wrap; } }";
+@media print { body { max-width: none; margin: 0; font-size: 11px; } nav { display: none; } figure, tr, .warning { break-inside: avoid; } h2 { break-after: avoid; } pre { white-space: pre-wrap; } .wide { overflow: visible; } }";
 
 /// Writes the report of a run or a parameter sweep.
 ///
@@ -96,9 +96,23 @@ fn of_sweep(sweep: &SweepResults) -> Result<String, CliError> {
     );
     page.summary(&lines);
     page.heading("Runs");
-    page.table(sweep.table().rows());
+    let table = sweep.table();
+    let (rows, omitted) = informative(table.rows());
+    for part in narrow(&rows) {
+        page.table(&part);
+    }
+    if !omitted.is_empty() {
+        let text = format!("Zero in all runs: {}.", omitted.join(", "));
+        page.text(format_args!("<p>{}</p>\n", escaped(&text)));
+    }
     page.heading("Charts");
     for scalar in plot::usual_scalars(sweep) {
+        let values = sweep
+            .runs()
+            .filter_map(|(_, results)| pericles_run::scalar(&results?, &scalar).ok());
+        if values.into_iter().all(|(value, _)| value == 0.0) {
+            continue;
+        }
         let chart = sweep.chart(None, &scalar)?;
         let png = chart.width(1000).to_png("chart")?;
         page.figure(&png, &format!("{} of each run", scalar.replace('_', " ")));
@@ -114,7 +128,41 @@ fn of_sweep(sweep: &SweepResults) -> Result<String, CliError> {
                 .map(|(name, path)| (name.clone(), path.as_path())),
         )?;
     }
-    Ok(page.finished(&format!("Parameter sweep of {}", sweep.deck_file())))
+    let deck = file_name(Path::new(sweep.deck_file()));
+    Ok(page.finished(&format!("Parameter sweep of {deck}")))
+}
+
+/// Returns a table without the columns that are zero or empty in all rows below the header, and the names of those that are
+/// zero.
+fn informative(rows: &[Vec<String>]) -> (Vec<Vec<String>>, Vec<String>) {
+    let Some((header, runs)) = rows.split_first() else {
+        return (Vec::new(), Vec::new());
+    };
+    let is_zero = |text: &String| text.parse::<f64>().is_ok_and(|number| number == 0.0);
+    let is_omitted = |column: usize| {
+        runs.iter()
+            .all(|run| run[column].is_empty() || is_zero(&run[column]))
+    };
+    let kept: Vec<usize> = (0..header.len()).filter(|&k| !is_omitted(k)).collect();
+    let of_row = |row: &Vec<String>| kept.iter().map(|&column| row[column].clone()).collect();
+    let omitted = (0..header.len()).filter(|k| runs.iter().any(|run| is_zero(&run[*k])));
+    let omitted = omitted.filter(|&k| is_omitted(k));
+    let omitted = omitted.map(|column| header[column].clone()).collect();
+    (rows.iter().map(of_row).collect(), omitted)
+}
+
+/// Divides a table into tables that are not wider than a page, each with the first column.
+fn narrow(rows: &[Vec<String>]) -> Vec<Vec<Vec<String>>> {
+    /// Most columns beside the first one.
+    const COLUMNS: usize = 6;
+    let columns = rows.first().map_or(0, Vec::len);
+    let starts = (1..columns).step_by(COLUMNS);
+    let part = |start: usize| {
+        let end = columns.min(start + COLUMNS);
+        let row = |row: &Vec<String>| [&row[..1], &row[start..end]].concat();
+        rows.iter().map(row).collect()
+    };
+    starts.map(part).collect()
 }
 
 /// The HTML text after the title.
@@ -187,13 +235,19 @@ impl Page {
     fn table(&mut self, rows: &[Vec<String>]) {
         self.text(format_args!("<div class=\"wide\"><table class=\"runs\">\n"));
         for (number, row) in rows.iter().enumerate() {
-            let cell = if number == 0 { "th" } else { "td" };
+            let is_header = number == 0;
+            let cell = if is_header { "th" } else { "td" };
             let cells = row.iter().map(|text| {
                 let text = match text.parse::<f64>() {
                     Ok(value) if value.fract() != 0.0 => significant(value, 4),
                     _ => text.clone(),
                 };
-                format!("<{cell}>{}</{cell}>", escaped(&text))
+                let mut text = escaped(&text);
+                if is_header {
+                    // Long names may continue on the next line.
+                    text = text.replace('_', "_<wbr>").replace('.', ".<wbr>");
+                }
+                format!("<{cell}>{text}</{cell}>")
             });
             let cells: String = cells.collect();
             self.text(format_args!("<tr>{cells}</tr>\n"));
@@ -386,4 +440,38 @@ fn spread(paths: &[PathBuf]) -> Vec<&Path> {
     let last = paths.len() - 1;
     let pick = |k: usize| paths[k * last / (MOST_PICTURES - 1)].as_path();
     (0..MOST_PICTURES).map(pick).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_that_are_zero_in_all_runs_are_named_below_the_table() {
+        let row = |cells: [&str; 4]| cells.map(String::from).to_vec();
+        let rows = [
+            row(["run", "kinetic_energy [J]", "elastic_energy [J]", "dt [s]"]),
+            row(["a", "0.0", "1.5", ""]),
+            row(["b", "0", "0", ""]),
+        ];
+        let (kept, omitted) = informative(&rows);
+        assert_eq!(kept[0], ["run", "elastic_energy [J]"]);
+        assert_eq!(kept[2], ["b", "0"]);
+        assert_eq!(omitted, ["kinetic_energy [J]"]);
+    }
+
+    #[test]
+    fn wide_tables_are_divided_and_lose_no_column() {
+        let rows: Vec<Vec<String>> = (0..2)
+            .map(|row| (0..16).map(|k| format!("{row} {k}")).collect())
+            .collect();
+        let parts = narrow(&rows);
+        assert!(
+            parts
+                .iter()
+                .all(|part| part[1][0] == "1 0" && part[0].len() <= 7)
+        );
+        let columns = parts.iter().flat_map(|part| &part[1][1..]);
+        assert!(columns.eq(&rows[1][1..]));
+    }
 }

@@ -23,7 +23,7 @@ use crate::signals::Signals;
 use crate::summary;
 use crate::sweep;
 use crate::text_chart::TextChart;
-use crate::time_axis::TimeAxis;
+use pericles_run::TimeAxis;
 
 /// Runs a deck.
 ///

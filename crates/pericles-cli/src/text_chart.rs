@@ -97,7 +97,7 @@ fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::time_axis::TimeAxis;
+    use pericles_run::TimeAxis;
 
     #[test]
     fn straight_lines_connect_the_corners_and_curves_have_markers() {

@@ -13,6 +13,7 @@
 //! | text `x y z block volume` | bodies given by a list of points | [`read_points`] |
 //! | text with a line `x y` for each corner | plane bodies given by outlines | [`read_outline`] |
 //! | text with a line of numbers for each point | initial states | [`read_rows`] |
+//! | stand-alone HTML pages of field series | browsers | [`viewer`] |
 //! | checkpoints | resuming a run bit for bit | [`CheckpointFolder`], [`Container`] |
 //! | cached results | reused by all runs of a user | [`DiskCache`] |
 //! | all of these except checkpoints | output during a simulation | [`observers`] |
@@ -64,6 +65,7 @@ mod points;
 mod result_body;
 mod rows;
 mod text_error;
+pub mod viewer;
 mod vtk;
 mod whole;
 mod xml;

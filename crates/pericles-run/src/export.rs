@@ -1,8 +1,11 @@
 //! Export of the fields of a run to other formats.
 
+mod contents;
+mod page;
 mod run_fields;
 
 use std::fs;
+use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -16,7 +19,7 @@ use crate::observers::{field_selection, result_body};
 use crate::results::Results;
 use crate::{machine, readers};
 
-use self::run_fields::RunFields;
+use self::run_fields::{RunFields, SelectedFields};
 
 /// A format of exported fields.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,14 +33,42 @@ pub enum ExportFormat {
     /// A NumPy archive: `time` (outputs), `position` (points × dimension), `volume` (points), and each field
     /// (outputs × points, vectors × 3).
     Npz,
+    /// A stand-alone page for browsers, which shows the fields over time; their values are rounded to 16 bits.
+    Html,
 }
 
-/// Writes all fields of a run to a new file or folder, in the user's order of points; returns the number of output
-/// times.
+/// The outputs and fields to export.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Selection {
+    /// Every how many outputs one is exported, and the last one; all if `None`.
+    pub every: Option<NonZeroUsize>,
+    /// Largest size of the fields of a page, bytes; 200 MB if `None`. A page of a larger series has fewer outputs, unless
+    /// `every` is given. Other formats have no limit.
+    pub size: Option<u64>,
+    /// Names of the fields, such as `Damage` or `Stress` for all its components; all fields if empty.
+    pub fields: Vec<String>,
+}
+
+/// The exported series.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Exported {
+    /// Number of exported outputs.
+    pub outputs: usize,
+    /// What was left out, in sentences.
+    pub notes: Vec<String>,
+}
+
+/// Writes fields of a run to a new file or folder, in the user's order of points. A page replaces a file of this name.
 ///
 /// # Errors
-/// The run has no field files, the points cannot be built from its deck, or files cannot be read or written.
-pub fn export(results: &Results, format: ExportFormat, path: &Path) -> Result<usize, RunError> {
+/// The run has no field files or not the selected fields, the points cannot be built from its deck, or files cannot be
+/// read or written.
+pub fn export(
+    results: &Results,
+    format: ExportFormat,
+    selection: &Selection,
+    path: &Path,
+) -> Result<Exported, RunError> {
     let source = results.source()?.read()?;
     let model = source.model();
     let resources = Resources {
@@ -49,15 +80,16 @@ pub fn export(results: &Results, format: ExportFormat, path: &Path) -> Result<us
     let points = points.map_err(|error| source.rejection(error))?;
     let body = result_body(model, &points.cloud, &points.sets, &points.meshes);
     let body = Arc::new(body);
-    let selection = field_selection(model, &points.cloud, &points.sets);
-    let fields = RunFields::open(results, model, &body, selection)?;
+    let arrays = field_selection(model, &points.cloud, &points.sets);
+    let fields = RunFields::open(results, model, &body, arrays)?;
     let Some(fields) = fields.filter(|fields| fields.outputs() > 0) else {
         return Err(results.damaged("run.json", "the run wrote no field files".into()));
     };
-    let specs = fields.specs();
+    let mut fields = SelectedFields::new(fields, selection)?;
     let outputs = fields.outputs();
+    let specs = fields.specs();
     let mut export = Export {
-        fields,
+        fields: &mut fields,
         specs,
         body: &body,
         path,
@@ -67,12 +99,24 @@ pub fn export(results: &Results, format: ExportFormat, path: &Path) -> Result<us
         ExportFormat::VtkHdf => export.vtkhdf(),
         ExportFormat::Csv => export.csv(),
         ExportFormat::Npz => export.npz(),
+        ExportFormat::Html => {
+            let run = page::RunToShow {
+                results,
+                model,
+                points: &points,
+                body: &body,
+            };
+            return page::write(&run, fields, selection, path);
+        }
     }?;
-    Ok(outputs)
+    Ok(Exported {
+        outputs,
+        notes: Vec::new(),
+    })
 }
 
 struct Export<'a> {
-    fields: RunFields,
+    fields: &'a mut SelectedFields,
     specs: Vec<FieldSpec>,
     body: &'a ResultBody,
     path: &'a Path,

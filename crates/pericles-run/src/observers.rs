@@ -75,6 +75,7 @@ pub(crate) fn observed(
     let mut names = [
         "run.json",
         "report.html",
+        "fields.html",
         "history.csv",
         "checkpoints/step-*.chk",
     ]

@@ -438,11 +438,22 @@ fn result_files_of_a_resumed_run_equal_those_of_an_uninterrupted_one() {
     assert_eq!(names, ["steel", "left", "right"]);
     let results = Results::open(&whole).unwrap();
     let exported = whole.join("exported.exo");
-    let outputs = pericles_run::export(&results, pericles_run::ExportFormat::Exodus, &exported);
-    assert_eq!(outputs.unwrap(), 11);
+    let outputs = pericles_run::export(
+        &results,
+        pericles_run::ExportFormat::Exodus,
+        &Default::default(),
+        &exported,
+    );
+    assert_eq!(outputs.unwrap().outputs, 11);
     assert!(read(&whole, "fields.exo") == read(&whole, "exported.exo"));
     let table = whole.join("tables");
-    pericles_run::export(&results, pericles_run::ExportFormat::Csv, &table).unwrap();
+    pericles_run::export(
+        &results,
+        pericles_run::ExportFormat::Csv,
+        &Default::default(),
+        &table,
+    )
+    .unwrap();
     let table = pericles_io::read_csv(table.join("fields_000010.csv")).unwrap();
     let state = results.fields().unwrap().last().unwrap().read().unwrap();
     let ours = table.column("Displacement_x").unwrap();

@@ -1,8 +1,10 @@
-//! Arguments of `mesh` and `export`.
+//! Arguments of `mesh`, `export` and `view`.
 
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use pericles_run::{Selection, machine};
 
 use super::Length;
 use super::Memory;
@@ -41,6 +43,47 @@ pub(crate) struct ExportArgs {
     /// the output folder]
     #[arg(long, value_name = "PATH")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) selection: SelectionArgs,
+}
+
+/// Arguments of `view`.
+#[derive(Debug, Args)]
+pub(crate) struct ViewArgs {
+    /// The output folder of a run
+    pub(crate) dir: PathBuf,
+    /// The file to write; an existing one is replaced [default: fields.html in the output folder]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Write the page without opening it
+    #[arg(long)]
+    pub(crate) no_open: bool,
+    #[command(flatten)]
+    pub(crate) selection: SelectionArgs,
+}
+
+/// Selection of output times and fields.
+#[derive(Debug, Args)]
+pub(crate) struct SelectionArgs {
+    /// Use every N-th output time, and the last one [default: all]
+    #[arg(long, value_name = "N")]
+    pub(crate) every: Option<NonZeroUsize>,
+    /// Largest size of the fields of a page, such as 20MB: a page of a larger series has fewer output times [default: 200MB]
+    #[arg(long, value_name = "SIZE", value_parser = machine::size, conflicts_with = "every")]
+    pub(crate) max_size: Option<u64>,
+    /// Comma-separated names of the fields, such as Damage,Velocity,Stress [default: all]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) fields: Vec<String>,
+}
+
+impl SelectionArgs {
+    pub(crate) fn selection(&self) -> Selection {
+        Selection {
+            every: self.every,
+            size: self.max_size,
+            fields: self.fields.clone(),
+        }
+    }
 }
 
 /// Formats of exported fields.
@@ -54,4 +97,6 @@ pub(crate) enum ExportFormat {
     Csv,
     /// One NumPy archive
     Npz,
+    /// One page for browsers, which shows the fields over time, as `pericles view` does
+    Html,
 }

@@ -8,7 +8,7 @@ use crate::args::PlotArgs;
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
-use crate::time_axis::TimeAxis;
+use pericles_run::TimeAxis;
 
 /// Draws the columns `--y` over the column `--x`, by default over the time. Columns of different tables are drawn at the
 /// times that both tables have.

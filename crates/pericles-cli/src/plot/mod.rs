@@ -16,7 +16,7 @@ use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::text_chart::TextChart;
-use crate::time_axis::TimeAxis;
+use pericles_run::TimeAxis;
 
 pub(crate) use sweep::usual as usual_scalars;
 

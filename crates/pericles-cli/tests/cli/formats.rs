@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::{run, succeed, text};
+use crate::view::Page;
 
 /// A mesh of 4 × 2 unit squares, in mm, with the groups "A" and "B" of one half each, the edge "left" and a group with a
 /// long name.
@@ -274,10 +275,13 @@ fn every_deck_that_check_accepts_runs_in_every_format_and_is_exported() {
                             continue;
                         }
                         // Every format is exported to another one.
-                        let to = ["exodus", "vtkhdf", "csv", "npz"][runs % 4];
+                        let to = ["exodus", "vtkhdf", "csv", "npz", "html"][runs % 5];
                         let _ = fs::remove_dir_all(folder.join("exported"));
                         let _ = fs::remove_file(folder.join("exported"));
                         succeed(folder, &format!("export out --to {to} --out exported"));
+                        if to == "html" {
+                            assert_eq!(Page::open(&folder.join("exported")).times(), 3, "{deck}");
+                        }
                     }
                 }
             }

@@ -25,5 +25,6 @@ mod results;
 mod resume;
 mod resume_details;
 mod trust;
+mod view;
 mod watch;
 mod wrong_decks;

@@ -4,9 +4,9 @@ use pericles::family::Crack;
 use pericles::space::{Point, PointCloud};
 
 use super::cell_mesh::CellMesh;
-use super::drawn_cells::DrawnCells;
+use super::drawn_cells::{CellArrays, DrawnCells};
 use super::motion::Motion;
-use super::overlay::Overlay;
+use super::overlay::{CarriedLine, Overlay};
 use crate::picture::Polygons;
 
 /// The shape of a body in its pictures.
@@ -48,6 +48,19 @@ impl BodyShape {
             cells: mesh.map(|mesh| DrawnCells::new(cloud, mesh, cuts)),
             overlay: Overlay::new(cloud, cracks, classes),
         }
+    }
+
+    /// Returns the cells as arrays; `None` for a body without cells.
+    pub fn cells(&self) -> Option<CellArrays> {
+        self.cells.as_ref().map(DrawnCells::arrays)
+    }
+
+    /// Returns the pre-cracks, interfaces and borders of refined parts of the body at rest.
+    pub fn lines_at_rest(&self) -> Vec<CarriedLine> {
+        let traces = self.cells.iter().flat_map(DrawnCells::traces_at_rest);
+        let traces = traces.map(|line| line.into_iter().map(|(place, point)| (place, [point; 2])));
+        let traces = traces.map(Iterator::collect);
+        traces.chain(self.overlay.at_rest()).collect()
     }
 
     /// Returns the body with a displacement, component-major, magnified by `scale`. `damage` is that of the points, if

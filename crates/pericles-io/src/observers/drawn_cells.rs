@@ -253,6 +253,50 @@ impl DrawnCells {
     }
 }
 
+/// The cells of a body with their neighbours as plain arrays.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CellArrays {
+    /// Positions of the nodes, m.
+    pub nodes: Vec<Point>,
+    /// VTK's type of each cell.
+    pub types: Vec<u32>,
+    /// The nodes of all cells, one cell after the other.
+    pub corners: Vec<u32>,
+    /// The point of each cell.
+    pub points: Vec<u32>,
+    /// The cell beyond each facet, one cell after the other; `u32::MAX` beyond the boundary of the body.
+    pub across: Vec<u32>,
+    /// Whether a pre-crack separates the cells at a facet.
+    pub cut: Vec<bool>,
+}
+
+impl DrawnCells {
+    /// Returns the cells as arrays.
+    pub(super) fn arrays(&self) -> CellArrays {
+        CellArrays {
+            nodes: self.nodes.clone(),
+            types: self
+                .kinds
+                .iter()
+                .map(|kind| u32::from(kind.vtk()))
+                .collect(),
+            corners: self.cells.corners().to_vec(),
+            points: self.points.clone(),
+            across: self.sides.iter().map(|side| side.across).collect(),
+            cut: self.sides.iter().map(|side| side.is_cut).collect(),
+        }
+    }
+
+    /// Returns the lines in which pre-cracks meet the boundary of a solid: places, each with the point that it moves with.
+    pub(super) fn traces_at_rest(&self) -> impl Iterator<Item = Vec<(Point, u32)>> + '_ {
+        let place =
+            |&(cell, node): &(u32, u32)| (self.nodes[node as usize], self.points[cell as usize]);
+        self.traces
+            .iter()
+            .map(move |line| line.iter().map(place).collect())
+    }
+}
+
 /// Cells in a motion.
 pub(super) struct DeformedCells<'a, 'm> {
     cells: &'a DrawnCells,

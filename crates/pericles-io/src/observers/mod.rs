@@ -86,12 +86,14 @@ pub use columns::{
     LoadFactorColumn,
 };
 pub use cracks::{CrackSignals, Cracks};
+pub use drawn_cells::CellArrays;
 pub use field_columns::{FieldSelection, PointMark};
 pub use fields::FieldSeries;
 pub use force_displacement::ForceDisplacement;
 pub use fragments::FragmentCourse;
 pub use history::{History, HistoryRows};
 pub use impactors::{ContactColumns, ImpactorSignals, ImpactorSurfaces};
+pub use overlay::CarriedLine;
 pub use picture_of::{DrawnState, PictureOf};
 pub use pictures::Pictures;
 pub use profile::{Profile, Reference, profile_chart};

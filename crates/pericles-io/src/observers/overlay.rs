@@ -16,6 +16,9 @@ pub(super) struct Overlay {
     lines: Vec<Vec<Carried>>,
 }
 
+/// A line at rest: places, each with the two points with whose mean it moves.
+pub type CarriedLine = Vec<(Point, [u32; 2])>;
+
 /// A place that moves with the mean of two points, which may be the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Carried {
@@ -38,6 +41,16 @@ impl Overlay {
             lines.extend(interfaces(cloud, &CellMesh::of_boxes(cloud), classes));
         }
         Self { lines }
+    }
+
+    /// Returns the lines at rest: places, each with the two points with whose mean it moves.
+    pub(super) fn at_rest(&self) -> impl Iterator<Item = CarriedLine> + '_ {
+        let of_line = |line: &Vec<Carried>| {
+            line.iter()
+                .map(|carried| (carried.place, carried.points))
+                .collect()
+        };
+        self.lines.iter().map(of_line)
     }
 
     /// Returns the displaced lines, interrupted where fragments tear them apart and where their two points separate by more

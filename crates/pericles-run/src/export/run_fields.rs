@@ -12,6 +12,8 @@ use pericles_mesh::results::FieldSpec;
 use crate::error::RunError;
 use crate::results::{FieldFile, Results};
 
+use super::Selection;
+
 /// Number of components of vectors, whatever the dimension of the body is.
 const VECTOR: usize = 3;
 
@@ -124,6 +126,110 @@ impl RunFields {
             }
         }
     }
+}
+
+/// Selected outputs and fields of a run.
+pub(super) struct SelectedFields {
+    fields: RunFields,
+    /// Numbers of the outputs.
+    outputs: Vec<usize>,
+    /// Numbers of the fields.
+    columns: Vec<usize>,
+    specs: Vec<FieldSpec>,
+}
+
+impl SelectedFields {
+    /// Selects outputs and fields.
+    ///
+    /// # Errors
+    /// The run has not written a selected field.
+    pub(super) fn new(fields: RunFields, selection: &Selection) -> Result<Self, RunError> {
+        let specs = fields.specs();
+        let mut columns: Vec<usize> = Vec::new();
+        for name in &selection.fields {
+            let found = (0..specs.len()).filter(|&k| is_named(&specs[k].name, name));
+            let found: Vec<usize> = found.collect();
+            if found.is_empty() {
+                let names: Vec<&str> = specs.iter().map(|spec| spec.name.as_str()).collect();
+                let listing = format!("the run wrote the fields {}", names.join(", "));
+                return Err(RunError::unknown("field", name, &names, &listing));
+            }
+            columns.extend(found);
+        }
+        if selection.fields.is_empty() {
+            columns = (0..specs.len()).collect();
+        }
+        columns.sort_unstable();
+        columns.dedup();
+        let mut selected = Self {
+            outputs: (0..fields.outputs()).collect(),
+            specs: columns.iter().map(|&k| specs[k].clone()).collect(),
+            columns,
+            fields,
+        };
+        if let Some(every) = selection.every {
+            selected.keep_every(every.get());
+        }
+        Ok(selected)
+    }
+
+    /// Adds a field, if the run has written it.
+    pub(super) fn add(&mut self, name: &str) {
+        let specs = self.fields.specs();
+        let found = specs.iter().position(|spec| spec.name == name);
+        if let Some(k) = found.filter(|k| !self.columns.contains(k)) {
+            self.columns.push(k);
+            self.specs.push(specs[k].clone());
+        }
+    }
+
+    /// Keeps every n-th of the outputs, and the last one.
+    pub(super) fn keep_every(&mut self, n: usize) {
+        let last = self.outputs.len().saturating_sub(1);
+        let kept = self.outputs.iter().enumerate();
+        let kept = kept.filter(|(k, _)| k % n.max(1) == 0 || *k == last);
+        self.outputs = kept.map(|(_, output)| *output).collect();
+    }
+
+    /// Returns the number of selected outputs.
+    pub(super) fn outputs(&self) -> usize {
+        self.outputs.len()
+    }
+
+    /// Returns the number of outputs of the run.
+    pub(super) fn all_outputs(&self) -> usize {
+        self.fields.outputs()
+    }
+
+    /// Returns the selected fields; vectors have three components.
+    pub(super) fn specs(&self) -> Vec<FieldSpec> {
+        self.specs.clone()
+    }
+
+    /// Returns the time of a selected output, s.
+    pub(super) fn time(&mut self, output: usize) -> Result<f64, RunError> {
+        self.fields.time(self.outputs[output])
+    }
+
+    /// Reads the time of a selected output, s, and the selected fields, component-major.
+    pub(super) fn read(&mut self, output: usize) -> Result<(f64, Vec<Vec<f64>>), RunError> {
+        let (time, mut all) = self.fields.read(self.outputs[output])?;
+        let values = self.columns.iter().map(|&k| std::mem::take(&mut all[k]));
+        Ok((time, values.collect()))
+    }
+}
+
+/// Returns whether an array of a file has a name, or is a component of the tensor of this name; capitals do not matter.
+fn is_named(array: &str, name: &str) -> bool {
+    let (array, name) = (array.to_lowercase(), name.to_lowercase());
+    let mut tensors = Field::ALL.into_iter().filter(|field| field.is_tensor());
+    array == name
+        || tensors.any(|tensor| {
+            let part = array.strip_prefix(&name);
+            let part = part.and_then(|end| end.strip_prefix('_'));
+            tensor.name().to_lowercase() == name
+                && part.is_some_and(|part| (1..=3).any(|d| tensor.components(d).contains(&part)))
+        })
 }
 
 /// Returns whether the components of a field form a vector.

@@ -1,12 +1,12 @@
 //! The time of a run as it is shown: static states have a load factor or a load step instead.
 
+use crate::results::Results;
+use crate::units::{quantity, significant};
 use pericles_io::Axis;
-use pericles_run::Results;
-use pericles_run::units::{quantity, significant};
 
 /// Name, unit and scale of the time of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TimeAxis {
+pub struct TimeAxis {
     name: &'static str,
     unit: &'static str,
     /// The time of one unit, s.
@@ -15,7 +15,7 @@ pub(crate) struct TimeAxis {
 
 impl TimeAxis {
     /// The time in seconds.
-    pub(crate) const TIME: Self = Self {
+    pub const TIME: Self = Self {
         name: "time",
         unit: "s",
         scale: 1.0,
@@ -23,7 +23,7 @@ impl TimeAxis {
 
     /// Returns the axis of a run: the load factor of static states, whose loads act fully at the end; the load step if
     /// loads are scaled from event to event; otherwise the time.
-    pub(crate) fn of(results: &Results) -> Self {
+    pub fn of(results: &Results) -> Self {
         /// Schemes of static states.
         const STATIC: [&str; 3] = ["adaptive-dynamic-relaxation", "fire", "static"];
         let step = results.number("/model/dt").unwrap_or_default();
@@ -45,17 +45,32 @@ impl TimeAxis {
     }
 
     /// Returns the axis of a chart.
-    pub(crate) fn axis(&self) -> Axis {
+    pub fn axis(&self) -> Axis {
         Axis::new(self.name, self.unit)
     }
 
+    /// Returns the name: `time`, `load factor` or `load step`.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// Returns the SI unit; empty for load factors and load steps.
+    pub fn unit(&self) -> &'static str {
+        self.unit
+    }
+
+    /// Returns the time of one unit, s.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
     /// Returns times in the unit of the axis.
-    pub(crate) fn scaled(&self, times: &[f64]) -> Vec<f64> {
+    pub fn scaled(&self, times: &[f64]) -> Vec<f64> {
         times.iter().map(|t| t / self.scale).collect()
     }
 
     /// Returns the end of an axis as text: `40.0 µs`, `load factor 0.5`.
-    pub(crate) fn label(&self, value: f64) -> String {
+    pub fn label(&self, value: f64) -> String {
         match self.unit {
             "" => format!("{} {}", self.name, significant(value, 3)),
             unit => quantity(value, unit),
@@ -63,7 +78,7 @@ impl TimeAxis {
     }
 
     /// Returns a time (s) as text: `t = 40.0 µs`, `load factor 0.5`.
-    pub(crate) fn stamp(&self, t: f64) -> String {
+    pub fn stamp(&self, t: f64) -> String {
         let label = self.label(t / self.scale);
         match self.unit {
             "" => label,
