@@ -346,7 +346,12 @@ fn motion_function(
     table: &Table<'_>,
     (is_steady, scope): (bool, Scope<'_>),
 ) -> Option<TimeHistory> {
-    usual_if(is_steady, function(table, true), table, scope)
+    usual_if(
+        is_steady,
+        function(table, table.has("displacement")),
+        table,
+        scope,
+    )
 }
 
 fn load_function(table: &Table<'_>, (is_steady, scope): (bool, Scope<'_>)) -> Option<TimeHistory> {

@@ -7,6 +7,7 @@ use pericles::material::{
 use pericles_waves::ForceForm;
 
 use crate::body::{BodyRead, SolidShape};
+use crate::property::{MaterialProperty, number_of};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::vocabulary::{MODULI, STRENGTHS};
@@ -108,7 +109,10 @@ impl Sums {
 /// Reads the modulus with its calibration, unchecked; see [`ConstantRules::modulus`].
 pub(crate) fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<Modulus> {
     let value = table.exactly_one(MODULI).and_then(|(kind, item)| {
-        let number = item.positive(Quantity::Modulus)?;
+        let number = match kind {
+            "youngs_modulus" => number_of(&item, MaterialProperty::YoungsModulus)?,
+            _ => item.positive(Quantity::Modulus)?,
+        };
         let value = match kind {
             "youngs_modulus" => ElasticModulus::Young(number),
             "bulk_modulus" => ElasticModulus::Bulk(number),
@@ -179,9 +183,12 @@ pub(crate) fn fracture(table: &Table<'_>) -> Option<Fracture> {
     match table.at_most_one(STRENGTHS)? {
         None => Some(Fracture::Unbreakable),
         Some(("fracture_energy", item)) => Some(Fracture::Energy {
-            energy: item.positive(Quantity::SurfaceEnergy)?,
+            energy: number_of(&item, MaterialProperty::FractureEnergy)?,
             calibration: FractureCalibration::default(),
         }),
-        Some((_, item)) => Some(Fracture::CriticalStretch(item.positive(Quantity::Number)?)),
+        Some((_, item)) => {
+            let stretch = number_of(&item, MaterialProperty::CriticalStretch)?;
+            Some(Fracture::CriticalStretch(stretch))
+        }
     }
 }

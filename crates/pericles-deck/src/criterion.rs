@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::expression::BondExpression;
 use crate::fault::Fault;
-use crate::quantity::Quantity;
+use crate::property::{MaterialProperty, number_of};
 use crate::reader::Table;
 use crate::vocabulary::{BY_STATE, STRENGTHS};
 
@@ -38,6 +38,10 @@ impl BondCriterion for BondExpression {
         self.value(bond)
     }
 
+    fn varies(&self) -> bool {
+        BondExpression::varies(self)
+    }
+
     fn words(&self) -> String {
         format!("where {} exceeds 1", self.text())
     }
@@ -64,7 +68,9 @@ pub(crate) fn read(
     }
     let item = table.required(own)?;
     let criterion = match own {
-        "strength" => FailureCriterion::PrincipalStress(item.positive(Quantity::Traction)?),
+        "strength" => {
+            FailureCriterion::PrincipalStress(number_of(&item, MaterialProperty::Strength)?)
+        }
         _ => {
             let text = item.text()?;
             let parsed = BondExpression::parse(&text, dimension.unwrap_or(3));

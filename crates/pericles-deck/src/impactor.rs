@@ -284,7 +284,10 @@ fn function(
     table: &Table<'_>,
     (kind, scope): (Option<&MotionKind>, MotionScope<'_>),
 ) -> Option<TimeHistory> {
-    let (function, is_given) = (course::function(table, true), table.has("function"));
+    let (function, is_given) = (
+        course::function(table, table.has("displacement")),
+        table.has("function"),
+    );
     match kind == Some(&MotionKind::Displacement) && !is_given {
         true => Some(scope.deck.usual.clone()),
         false => function,

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::body::BodyRead;
 use crate::constants::{self, ConstantRules, Sums};
 use crate::material::{Material, MaterialModel};
+use crate::property::reject_functions;
 use crate::reader::{Item, Table};
 use crate::state_based::SolidRules;
 use crate::vocabulary::{INTERFACE_KEYS, INTERFACE_STIFFNESSES, MODULI, STRENGTHS};
@@ -125,7 +126,9 @@ fn interface(
             (Some(None), failure.map(InterfaceFailure::StateBased))
         }
     };
+    let numbers = reject_functions(&table);
     table.finish();
+    numbers?;
     Some(MaterialInterface {
         between: between?,
         stiffness: stiffness?,

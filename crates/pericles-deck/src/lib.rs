@@ -112,6 +112,7 @@ mod newmark;
 mod output;
 mod overrides;
 mod parse;
+mod property;
 mod quantity;
 mod range;
 mod reader;
@@ -170,6 +171,9 @@ pub use output::{
     Checkpoint, CrackOutput, DerivedQuantity, FieldBlocks, FieldFormat, FieldNames, FieldOutput,
     FragmentOutput, HistoryOutput, Output, Picture, PictureColours, PictureFormat, PictureLook,
     PointNumber, Precision, Profile,
+};
+pub use property::{
+    MaterialFunction, MaterialFunctions, MaterialProperty, Property, PropertyFunction,
 };
 pub use quantity::{metres, seconds, si_unit};
 pub use region::Depth;

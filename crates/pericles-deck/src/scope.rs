@@ -3,6 +3,7 @@
 use crate::component::Variables;
 use crate::course::TimeHistory;
 use crate::declaration::Spatial;
+use crate::property::PropertyScope;
 use crate::reader::Item;
 use crate::set::{SetNames, bad_name};
 
@@ -35,6 +36,14 @@ impl Scope<'_> {
         Variables {
             dimension: self.dimension,
             time,
+        }
+    }
+
+    /// Returns the scope of properties of materials that may be functions of position.
+    pub(crate) fn of_place(self) -> PropertyScope {
+        PropertyScope {
+            dimension: self.dimension,
+            temperature: false,
         }
     }
 }

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::constants;
 use crate::criterion::FailureCriterion;
+use crate::property::{MaterialProperty, number_of};
 use crate::quantity::Quantity;
 use crate::reader::Table;
 use crate::vocabulary::{BY_STATE, MODULI, STRENGTHS};
@@ -153,7 +154,21 @@ impl SolidRules {
     pub(crate) fn elastic(&self, table: &Table<'_>) -> Option<GivenConstants> {
         table.together(MODULI);
         let modulus = |key| table.maybe(key, |item| item.positive(Quantity::Modulus));
-        let [young, bulk, shear] = ["youngs_modulus", "bulk_modulus", "shear_modulus"].map(modulus);
+        let young = table.maybe("youngs_modulus", |item| {
+            number_of(&item, MaterialProperty::YoungsModulus)
+        });
+        let [bulk, shear] = ["bulk_modulus", "shear_modulus"].map(modulus);
+        let is_function = table
+            .optional("youngs_modulus")
+            .is_some_and(|item| item.is_table());
+        if is_function {
+            for key in ["bulk_modulus", "shear_modulus"] {
+                table.forbid(
+                    key,
+                    "with a function as `youngs_modulus`, Poisson's ratio is constant; use `poisson_ratio`",
+                );
+            }
+        }
         table.forbid(
             "modulus",
             "the bulk stiffness of a state-based material is exact on every lattice; use influence = { function = \"isotropic\" } for exact shear",
@@ -214,7 +229,9 @@ impl SolidRules {
 
 /// Reads `yield_stress` and `hardening` of any model.
 pub(crate) fn read_yield(table: &Table<'_>) -> Option<Option<Yield>> {
-    let stress = table.maybe("yield_stress", |item| item.positive(Quantity::Modulus));
+    let stress = table.maybe("yield_stress", |item| {
+        number_of(&item, MaterialProperty::YieldStress)
+    });
     if !table.has("yield_stress") {
         table.forbid("hardening", "it requires `yield_stress`");
         return Some(None);

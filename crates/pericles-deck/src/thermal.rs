@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::component::Component;
 use crate::course::TimeHistory;
 use crate::declaration::DeckKeys;
+use crate::property::Property;
 use crate::range::{Range, at_least};
 use crate::reader::Table;
 use crate::scope::{Scope, material_name, set_name};
@@ -20,13 +21,13 @@ use crate::scope::{Scope, material_name, set_name};
 #[serde(deny_unknown_fields)]
 #[deck(scope = ThermalScope<'s>, exactly_one("temperature", "file"))]
 pub struct Thermal {
-    /// Coefficient of thermal expansion α of all materials without their own (steel: 12e-6). With heat conduction it is
-    /// optional. Bodies with scheme = "thermal" in `[time]` do not move and do not expand.
+    /// Coefficient of thermal expansion α of all materials without their own (steel: 12e-6), a number or an expression of
+    /// position. With heat conduction it is optional. Bodies with scheme = "thermal" in `[time]` do not move and do not expand.
     ///
     /// In 1/K; none for a body that conducts heat only.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[deck(quantity = Expansion, required_if(!scope.conducts))]
-    pub expansion: Option<f64>,
+    #[deck(quantity = Expansion, scope = scope.deck.of_place(), required_if(!scope.conducts))]
+    pub expansion: Option<Property>,
     /// Temperature T, a number or an expression of position and time; with heat conduction the initial temperature, an
     /// expression of position. A temperature that changes with time does work, which the energy balance counts as
     /// external work.
@@ -70,24 +71,24 @@ pub struct MaterialThermal {
     /// Name of the material: its table in `[materials]`, or the name of the body's material.
     #[deck(with = material_name, scope = scope.deck)]
     pub name: String,
-    /// Coefficient of thermal expansion α of this material.
+    /// Coefficient of thermal expansion α of this material, a number or an expression of position.
     ///
     /// In 1/K.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[deck(quantity = Expansion, required_if(!scope.conducts))]
-    pub expansion: Option<f64>,
-    /// Thermal conductivity k of this material.
+    #[deck(quantity = Expansion, scope = scope.deck.of_place(), required_if(!scope.conducts))]
+    pub expansion: Option<Property>,
+    /// Thermal conductivity k of this material, a number or an expression of position.
     ///
     /// In W/(m K).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[deck(quantity = Conductivity, range = CONDUCTIVITIES, forbid_if(!scope.conducts, OF_BODY))]
-    pub conductivity: Option<f64>,
-    /// Specific heat capacity c of this material.
+    #[deck(quantity = Conductivity, range = CONDUCTIVITIES, scope = scope.deck.of_place(), forbid_if(!scope.conducts, OF_BODY))]
+    pub conductivity: Option<Property>,
+    /// Specific heat capacity c of this material, a number or an expression of position.
     ///
     /// In J/(kg K).
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[deck(quantity = SpecificHeat, range = POSITIVE, forbid_if(!scope.conducts, OF_BODY))]
-    pub specific_heat: Option<f64>,
+    #[deck(quantity = SpecificHeat, range = POSITIVE, scope = scope.deck.of_place(), forbid_if(!scope.conducts, OF_BODY))]
+    pub specific_heat: Option<Property>,
 }
 
 /// Heat conduction.
@@ -95,18 +96,18 @@ pub struct MaterialThermal {
 #[serde(deny_unknown_fields)]
 #[deck(scope = ThermalScope<'s>)]
 pub struct Conduction {
-    /// Thermal conductivity k of all materials without their own (steel: 45 W/m/K). A linear temperature field in the
-    /// interior of a lattice conducts exactly k.
+    /// Thermal conductivity k of all materials without their own (steel: 45 W/m/K), a number or an expression of position.
+    /// A linear temperature field in the interior of a lattice conducts exactly k.
     ///
     /// In W/(m K).
-    #[deck(quantity = Conductivity, range = CONDUCTIVITIES)]
-    pub conductivity: f64,
-    /// Specific heat capacity c of all materials without their own (steel: 460 J/kg/K). The heat capacity per volume is
-    /// ρ c.
+    #[deck(quantity = Conductivity, range = CONDUCTIVITIES, scope = scope.deck.of_place())]
+    pub conductivity: Property,
+    /// Specific heat capacity c of all materials without their own (steel: 460 J/kg/K), a number or an expression of
+    /// position. The heat capacity per volume is ρ c.
     ///
     /// In J/(kg K).
-    #[deck(quantity = SpecificHeat, range = POSITIVE)]
-    pub specific_heat: f64,
+    #[deck(quantity = SpecificHeat, range = POSITIVE, scope = scope.deck.of_place())]
+    pub specific_heat: Property,
     /// Time integration of the temperature. `explicit`: forward Euler method in sub-steps below its limit of stability.
     /// `trapezoidal`: trapezoidal rule, second order. `backward-euler`: backward Euler method, first order, damps all
     /// oscillations. `steady`: steady state of the conditions at each time.

@@ -281,8 +281,8 @@ const WRONG: &[Wrong] = &[
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\ndamage_above = 1\n[output]", (39, 16), "1", &["out of range", "below 1"]),
     wrong("[output]", "[[time.stop_when]]\nset = \"top\"\nreaction_below = 0.1\ndamage_above = 0.9\n[output]", (40, 16), "0.9", &["`reaction_below` and `damage_above` are given together"]),
     // Prescribed motions with jumps.
-    wrong("velocity = [0, \"free\"]", "velocity = [1, \"free\"]\nfunction = { kind = \"expression\", expression = \"step(t-1e-6)\" }", (24, 48), "\"step(t-1e-6)\"", &["no derivative in time", "`step(t-1e-6)`", "kind = \"table\""]),
-    wrong("velocity = [0, \"free\"]", "velocity = [1, \"free\"]\nfunction = { kind = \"expression\", expression = \"abs(t-1e-6)\" }", (24, 48), "\"abs(t-1e-6)\"", &["no derivative in time", "kind = \"table\""]),
+    wrong("velocity = [0, \"free\"]", "displacement = [1, \"free\"]\nfunction = { kind = \"expression\", expression = \"step(t-1e-6)\" }", (24, 48), "\"step(t-1e-6)\"", &["no derivative in time", "`step(t-1e-6)`", "kind = \"table\""]),
+    wrong("velocity = [0, \"free\"]", "displacement = [1, \"free\"]\nfunction = { kind = \"expression\", expression = \"abs(t-1e-6)\" }", (24, 48), "\"abs(t-1e-6)\"", &["no derivative in time", "kind = \"table\""]),
     // Boundaries.
     wrong("[time]", "[[boundary]]\nkind = \"absorbent\"\nside = \"-x\"\n[time]", (34, 8), "\"absorbent\"", &["unknown kind of boundary `absorbent`", "did you mean `absorbing`?"]),
     wrong("[time]", "[[boundary]]\nkind = \"absorbing\"\nside = \"-y\"\n[time]", (35, 8), "\"-y\"", &["unknown side `-y`", "\"-x\" and \"+x\""]),

@@ -4,7 +4,7 @@ use pericles_deck::{Body, Deck, LoadControl, Model, ModelWarning, Scheme};
 use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde::Serialize;
 
-use crate::build::{Assembly, LoadReport, MaterialConstants};
+use crate::build::{Assembly, LoadReport, MaterialConstants, PropertyRange, shown};
 use crate::heat::HeatFacts;
 use crate::open_facts::OpenFacts;
 use crate::refinement::RefinementFacts;
@@ -123,6 +123,9 @@ pub struct Facts {
     pub start: Option<StartFacts>,
     /// Vector instruction set of the force loops.
     pub instruction_set: &'static str,
+    /// Properties of materials that are functions.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub properties: Vec<PropertyFacts>,
     /// Warnings about the run.
     pub warnings: Vec<String>,
 }
@@ -144,6 +147,53 @@ impl StartFacts {
             self.checkpoint,
             quantity(self.t, "s")
         )
+    }
+}
+
+/// A property of a material that is a function; SI units.
+#[derive(Debug, Clone, Serialize)]
+pub struct PropertyFacts {
+    /// The material; `None` if the body has one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub material: Option<String>,
+    /// The key.
+    pub property: &'static str,
+    /// Smallest value over the points of the material, at the temperatures of the start.
+    pub least: f64,
+    /// Mean value over these points.
+    pub mean: f64,
+    /// Largest value.
+    pub most: f64,
+    #[serde(skip)]
+    unit: &'static str,
+    #[serde(skip)]
+    is_heated: bool,
+}
+
+impl PropertyFacts {
+    fn of(range: &PropertyRange) -> Self {
+        Self {
+            material: range.material.clone(),
+            property: range.key,
+            least: range.least,
+            mean: range.mean,
+            most: range.most,
+            unit: range.unit,
+            is_heated: range.is_heated,
+        }
+    }
+
+    /// Returns a summary line.
+    pub fn line(&self) -> String {
+        let [least, mean, most] =
+            [self.least, self.mean, self.most].map(|value| shown(value, self.unit));
+        let material = self.material.as_ref();
+        let of = material.map_or_else(String::new, |name| format!(" of {name}"));
+        let at = match self.is_heated {
+            true => ", at the temperatures of the start",
+            false => "",
+        };
+        format!("{}{of}: {least} to {most}, mean {mean}{at}", self.property)
     }
 }
 
@@ -259,6 +309,7 @@ impl Facts {
     }
 
     fn with(model: &Model, assembly: &Assembly, warnings: Vec<String>) -> Self {
+        let model = assembly.with_means(model);
         let operator = assembly.system.operator();
         let (domain, dimension) = (assembly.cloud.domain(), assembly.cloud.dimension());
         let points = domain.whole_points();
@@ -348,6 +399,7 @@ impl Facts {
                 t: *t,
             }),
             instruction_set: operator.instruction_set().name(),
+            properties: assembly.properties.iter().map(PropertyFacts::of).collect(),
             warnings,
         }
     }

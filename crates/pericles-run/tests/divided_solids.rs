@@ -61,3 +61,34 @@ fn failure_by_stress_has_the_files_of_one_process() {
         assert!(largest(&history, "max_Damage") > 0.0, "{history}");
     }
 }
+
+/// Means over the points of a material, values at points and yield stresses at temperatures do not depend on the division.
+#[test]
+fn properties_as_functions_have_the_files_of_one_process() {
+    let end = format!(
+        "{PULL}end = 3\ndt = 0.2\n[thermal]\nexpansion = 1e-5\nreference = 293\ntemperature = {{ expression = \"293 + 20*x + 30*t\" }}\n"
+    );
+    let graded = SOLID
+        .replace(
+            "density = 1\n",
+            "density = { expression = \"1 + 0.05*x + 0.01*z\" }\n",
+        )
+        .replace(
+            "youngs_modulus = 1\n",
+            "youngs_modulus = { expression = \"1 + 0.3*exp(-y)\" }\n",
+        );
+    let correspondence = graded.replace("state-based", "correspondence");
+    let breaks = "critical_stretch = { expression = \"0.012 + 1e-3*x\" }\n";
+    let plastic = "yield_stress = { expression = \"0.003*(1 + 0.1*y)*(1 - (temperature - 293)/5000)\" }\nhardening = 0.2\n";
+    let criterion = "failure = \"expression\"\ncriterion = \"normal_stress/(0.02 + 1e-3*x + 1e-6*temperature)*(1 + 0.1*t)\"\n";
+    for material in [
+        format!("{graded}{breaks}"),
+        format!("{correspondence}{plastic}"),
+        format!("{graded}{plastic}{breaks}"),
+        format!("{graded}{criterion}"),
+    ] {
+        println!("{material}");
+        let output = format!("{HISTORY}{FIELDS}");
+        check(&notched_block(&material, &end, &output), &[2, 3]);
+    }
+}

@@ -32,6 +32,7 @@
 use std::fmt;
 
 use crate::observe::StartEnergy;
+use crate::operator::LostYield;
 use crate::system::System;
 use crate::time::{Integrator, State, frequency_from_below, highest_frequency};
 use crate::units::significant;
@@ -75,6 +76,11 @@ pub enum InstabilityCause {
         /// The determinant J.
         volume_ratio: f64,
     },
+    /// The yield stress of a point is not positive at its temperature.
+    LostYield {
+        /// Yield stress relative to that of the material.
+        ratio: f64,
+    },
     /// Points overlap so much in contact that they are about to pass through each other.
     Overlapping {
         /// Overlap relative to the contact distance.
@@ -106,6 +112,11 @@ impl fmt::Display for InstabilityCause {
                 f,
                 "the deformation gradient has the determinant {volume_ratio:.3}, but it must be positive: the material is inverted"
             ),
+            Self::LostYield { ratio } => write!(
+                f,
+                "the yield stress at the temperature of the point is {} times that of the material, but it must be positive",
+                significant(*ratio, 3)
+            ),
             Self::Overlapping { overlap } => write!(
                 f,
                 "points overlap in contact by {:.0} % of the contact distance; allowed: up to {:.0} %",
@@ -135,6 +146,9 @@ impl InstabilityCause {
             Self::Inverted { .. } => {
                 "Usual causes: a load or prescribed displacement that is too strong or too fast, a time step above the stable limit. Remedies: a neo-Hookean law, which resists compression, or \
                  bonds that break (`fracture_energy`)"
+            }
+            Self::LostYield { .. } => {
+                "Use a `yield_stress` that is positive at all temperatures of the run, such as a table by temperature, which is constant beyond its last row"
             }
             Self::Overlapping { .. } => {
                 "The impact is too fast for the contact: use a larger stiffness or more points in the body, a smaller horizon, or a lower speed"
@@ -174,6 +188,7 @@ impl Watched<'_> {
     /// Runs the checks that are due after a step; all checks after the last step.
     pub(crate) fn look(&self, last: bool) -> Result<(), Alarm> {
         self.look_at_volumes()?;
+        self.look_at_yield()?;
         let due = |every: u64| last || self.state.step.is_multiple_of(every);
         if due(OFTEN) {
             self.look_at_motion()?;
@@ -194,6 +209,7 @@ impl Watched<'_> {
     /// Checks for NaN, infinity and inverted points only.
     pub(crate) fn look_at_numbers(&self, last: bool) -> Result<(), Alarm> {
         self.look_at_volumes()?;
+        self.look_at_yield()?;
         if !(last || self.state.step.is_multiple_of(OFTEN)) {
             return Ok(());
         }
@@ -248,6 +264,25 @@ impl Watched<'_> {
         Err(Alarm {
             cause: InstabilityCause::Inverted { volume_ratio },
             point: inversion.map_or(0, |found| found.point),
+            measure,
+        })
+    }
+
+    fn look_at_yield(&self) -> Result<(), Alarm> {
+        let (operator, domain) = (self.system.operator(), self.system.domain());
+        let lost = operator.lost_yield();
+        if !operator.capabilities().path_dependent || domain.all(lost.is_none()) {
+            return Ok(());
+        }
+        let finite = |lost: LostYield| match lost.ratio.is_nan() {
+            true => f64::INFINITY,
+            false => -lost.ratio,
+        };
+        let measure = lost.map_or(f64::NEG_INFINITY, finite);
+        let ratio = -domain.max(measure);
+        Err(Alarm {
+            cause: InstabilityCause::LostYield { ratio },
+            point: lost.map_or(0, |found| found.point),
             measure,
         })
     }

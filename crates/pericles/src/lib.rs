@@ -211,4 +211,6 @@ pub use step_end::{BreakingBond, Path, StepEnd};
 pub use step_kind::{StepKind, schemes_of};
 pub use stop::{Found, StopCondition, StopReason, StopTest, StopWhen};
 pub use system::System;
-pub use thermal::{Expandable, Temperature, ThermalExpansion};
+pub use thermal::{
+    Expandable, HeatedFactor, OfTemperature, Pointwise, Temperature, ThermalExpansion, YieldFactor,
+};

@@ -104,15 +104,18 @@ fn check_source(
     let mut lines = body(model, &facts);
     lines.extend(mesh::mesh(&assembly));
     lines.extend(neighbours(&assembly));
-    match (&model.body, &assembly.constants) {
+    let means = assembly.with_means(model);
+    match (&means.body, &assembly.constants) {
         (Body::Solid(solid), Some(constants)) => {
-            let others = (&model.materials[..], &assembly.other_materials[..]);
+            let others = (&means.materials[..], &assembly.other_materials[..]);
             lines.extend(material(solid, constants, &facts, others));
             lines.extend(model.interfaces.iter().map(interface));
         }
         (Body::Solid(_), None) => {}
         (Body::Surface(surface), _) => lines.extend(surface_material(surface)),
     }
+    let properties = facts.properties.iter();
+    lines.extend(properties.map(|one| Line::new("property", one.line())));
     lines.extend(plane_waves(model, &assembly));
     lines.extend(
         facts

@@ -21,10 +21,13 @@ enum Variable {
     NormalStress,
     ShearStress,
     Stretch,
+    Place(usize),
+    Time,
+    Temperature,
 }
 
 /// Names of variables and their least dimension.
-const VARIABLES: [(&str, usize, Variable); 22] = [
+const VARIABLES: [(&str, usize, Variable); 27] = [
     ("stress_xx", 1, Variable::Stress(0, 0)),
     ("stress_yy", 2, Variable::Stress(1, 1)),
     ("stress_zz", 3, Variable::Stress(2, 2)),
@@ -47,6 +50,11 @@ const VARIABLES: [(&str, usize, Variable); 22] = [
     ("normal_stress", 1, Variable::NormalStress),
     ("shear_stress", 1, Variable::ShearStress),
     ("stretch", 1, Variable::Stretch),
+    ("x", 1, Variable::Place(0)),
+    ("y", 2, Variable::Place(1)),
+    ("z", 3, Variable::Place(2)),
+    ("t", 1, Variable::Time),
+    ("temperature", 1, Variable::Temperature),
 ];
 
 impl Variable {
@@ -60,7 +68,15 @@ impl Variable {
             Self::NormalStress => bond.normal_stress(),
             Self::ShearStress => bond.shear_stress(),
             Self::Stretch => bond.stretch,
+            Self::Place(c) => bond.at.place[c],
+            Self::Time => bond.at.t,
+            Self::Temperature => bond.at.temperature,
         }
+    }
+
+    /// Returns whether it is the position, time or temperature of the bond.
+    fn is_of_place(self) -> bool {
+        matches!(self, Self::Place(_) | Self::Time | Self::Temperature)
     }
 }
 
@@ -87,7 +103,7 @@ impl BondExpression {
             found.map(|(.., variable)| *variable)
         };
         let variables: Vec<Variable> = compiled.var_names().iter().filter_map(variable).collect();
-        if variables.is_empty() {
+        if variables.iter().all(|variable| variable.is_of_place()) {
             return Err(Malformed {
                 reason: format!(
                     "it depends on no stress or strain; variables: {}",
@@ -110,6 +126,17 @@ impl BondExpression {
                 Variable::Stress(..) | Variable::PrincipalStress(_) | Variable::EquivalentStress
             )
         })
+    }
+
+    /// Returns whether it also depends on position, time or temperature.
+    pub fn varies(&self) -> bool {
+        self.variables.iter().any(|variable| variable.is_of_place())
+    }
+
+    /// Returns whether it depends on the temperature.
+    pub fn depends_on_temperature(&self) -> bool {
+        let is_temperature = |variable: &Variable| matches!(variable, Variable::Temperature);
+        self.variables.iter().any(is_temperature)
     }
 
     /// Returns the text of the expression.
@@ -160,6 +187,7 @@ impl PartialEq for BondExpression {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use pericles::material::BondPlace;
 
     /// Row and column of the tensor components, in the order of their names.
     const PLACES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)];
@@ -175,6 +203,11 @@ mod tests {
             strain,
             direction: [2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0],
             stretch: 0.02,
+            at: BondPlace {
+                place: [1.0, 2.0, 3.0],
+                t: 4.0,
+                temperature: 5.0,
+            },
         };
         let value = |text: &str| BondExpression::parse(text, 3).unwrap().value(&bond);
         for (k, (a, b)) in PLACES.into_iter().enumerate() {
@@ -186,6 +219,9 @@ mod tests {
             "sqrt(((stress_1-stress_2)^2 + (stress_2-stress_3)^2 + (stress_3-stress_1)^2)/2)";
         assert!((value("equivalent_stress") - value(mises)).abs() < 1e-13);
         assert!((value("stress_1 + stress_2 + stress_3") - 1.4).abs() < 1e-14);
+        let place = value("0*stretch + x + 10*y + 100*z + 1000*t + 10000*temperature");
+        assert_eq!(place, 54_321.0);
+        assert!(BondExpression::parse("x + t", 3).is_err());
         let trace = value("strain_xx + strain_yy + strain_zz");
         assert!((value("strain_1 + strain_2 + strain_3") - trace).abs() < 1e-16);
         assert_eq!(value("e*stretch"), std::f64::consts::E * 0.02);

@@ -70,7 +70,7 @@ impl Condition {
     /// Returns whether it holds for a point of a block at a position (m).
     pub fn holds(&self, place: [f64; 3], block: u32) -> bool {
         let [x, y, z] = place;
-        let values = [x, y, z, f64::NAN, f64::from(block)];
+        let values = [x, y, z, f64::NAN, f64::from(block), f64::NAN];
         self.test.holds(&|side| side.at(values))
     }
 }

@@ -58,15 +58,13 @@ impl Jet {
         }
     }
 
-    /// Returns f(u) for a function with jumps or kinks.
-    fn rough(self, f: impl FnOnce(f64) -> f64) -> Self {
+    /// Returns f(u) for a function with jumps or kinks and constant slopes between them; derivatives are those between jumps.
+    fn rough(self, f: impl FnOnce(f64) -> f64, slope: impl FnOnce(f64) -> f64) -> Self {
         match self.variation {
             Variation::Constant => Self::constant(f(self.value)),
             _ => Self {
-                value: f(self.value),
-                rate: f64::NAN,
-                second: f64::NAN,
                 variation: Variation::Rough,
+                ..self.chain(f(self.value), |u| [slope(u), 0.0])
             },
         }
     }
@@ -171,12 +169,14 @@ impl MakeOperators<Jet> for JetOperators {
             Operator::make_bin("^", joined(Jet::power, 4, false)),
             Operator::make_constant("pi", Jet::constant(std::f64::consts::PI)),
             Operator::make_constant("e", Jet::constant(std::f64::consts::E)),
-            unary("abs", |a| a.rough(f64::abs)),
-            unary("ceil", |a| a.rough(f64::ceil)),
-            unary("floor", |a| a.rough(f64::floor)),
-            unary("round", |a| a.rough(f64::round)),
-            unary("sign", |a| a.rough(super::sign)),
-            unary("step", |a| a.rough(super::step)),
+            unary("abs", |a| {
+                a.rough(f64::abs, |u| if u < 0.0 { -1.0 } else { 1.0 })
+            }),
+            unary("ceil", |a| a.rough(f64::ceil, |_| 0.0)),
+            unary("floor", |a| a.rough(f64::floor, |_| 0.0)),
+            unary("round", |a| a.rough(f64::round, |_| 0.0)),
+            unary("sign", |a| a.rough(super::sign, |_| 0.0)),
+            unary("step", |a| a.rough(super::step, |_| 0.0)),
             unary("acos", |a| {
                 a.chain(a.value.acos(), |u| {
                     let s = 1.0 - u * u;

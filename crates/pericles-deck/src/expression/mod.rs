@@ -1,4 +1,4 @@
-//! Expressions of x, y, z and t in decks.
+//! Expressions of x, y, z, t and the temperature in decks.
 //!
 //! The grammar has the usual precedence: `+ - * /` and `^` with `-x^2 = -(x^2)` and `2^3^2 = 2^(3^2)`,
 //! parentheses, numbers, the variables `x y z t` (m and s; those the body has), the constants `pi` and `e`,
@@ -13,6 +13,7 @@ mod condition;
 mod grammar;
 mod jet;
 mod signal;
+mod span;
 mod unit;
 
 use std::fmt;
@@ -26,6 +27,7 @@ pub use condition::Condition;
 use exmex::{Express, FlatEx, FloatOpsFactory, MakeOperators, Operator};
 use jet::{Jet, JetOperators, Variation};
 pub use signal::{SignalCondition, SignalExpression};
+use span::{Span, SpanOperators};
 
 /// Functions of one argument. `step` is 0 for negative arguments, otherwise 1.
 pub(crate) const FUNCTIONS: [&str; 20] = [
@@ -33,8 +35,9 @@ pub(crate) const FUNCTIONS: [&str; 20] = [
     "round", "sign", "sin", "sinh", "sqrt", "step", "tan", "tanh",
 ];
 
-/// Names of the variables, in the order of their values. `block` is for conditions only.
-pub(crate) const VARIABLES: [&str; 5] = ["x", "y", "z", "t", "block"];
+/// Names of the variables, in the order of their values. `block` is for conditions, `temperature` for properties of
+/// materials only.
+pub(crate) const VARIABLES: [&str; 6] = ["x", "y", "z", "t", "block", "temperature"];
 
 /// Largest length of an expression, in characters.
 pub(crate) const LONGEST: usize = 2000;
@@ -119,12 +122,22 @@ impl Expression {
     /// Returns the value at a position (m) and time (s); NaN where it is undefined, such as for the root of a
     /// negative number.
     pub fn value(&self, [x, y, z]: [f64; 3], t: f64) -> f64 {
-        self.at([x, y, z, t, f64::NAN])
+        self.at([x, y, z, t, f64::NAN, f64::NAN])
+    }
+
+    /// Returns whether it depends on the temperature.
+    pub fn depends_on_temperature(&self) -> bool {
+        self.variables.contains(&5)
+    }
+
+    /// Returns the value at a position (m) and temperature (K); NaN where it is undefined.
+    pub fn value_heated(&self, [x, y, z]: [f64; 3], temperature: f64) -> f64 {
+        self.at([x, y, z, f64::NAN, f64::NAN, temperature])
     }
 
     /// Returns the value for given values of all [`VARIABLES`].
-    fn at(&self, all: [f64; 5]) -> f64 {
-        let mut given = [0.0; 5];
+    fn at(&self, all: [f64; VARIABLES.len()]) -> f64 {
+        let mut given = [0.0; VARIABLES.len()];
         for (given, &v) in given.iter_mut().zip(&*self.variables) {
             *given = all[v];
         }
@@ -133,14 +146,24 @@ impl Expression {
         self.compiled.eval(given).unwrap_or(f64::NAN)
     }
 
-    /// Returns its time derivatives, unless it has jumps or kinks.
+    /// Returns its time derivatives, between jumps and kinks if it has any.
     pub(crate) fn rates(&self) -> Option<Rates> {
         let grouped = grammar::group_powers(&self.text, &VARIABLES).ok()?;
-        let rates = Rates {
+        Some(Rates {
             compiled: FlatEx::parse(&grouped).ok()?,
             variables: self.variables.clone(),
-        };
-        (rates.at([0.0; 3], 0.0).variation != Variation::Rough).then_some(rates)
+        })
+    }
+
+    /// Returns its jumps and kinks in time, if it has any.
+    pub(crate) fn jumps(&self) -> Option<Jumps> {
+        let grouped = grammar::group_powers(&self.text, &VARIABLES).ok()?;
+        let is_rough = self.rates().is_some_and(|rates| !rates.is_smooth());
+        Some(Jumps {
+            compiled: FlatEx::parse(&grouped).ok()?,
+            variables: self.variables.clone(),
+        })
+        .filter(|_| is_rough)
     }
 }
 
@@ -153,6 +176,11 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
+    /// Returns whether there are no jumps and kinks.
+    pub(crate) fn is_smooth(&self) -> bool {
+        self.at([0.0; 3], 0.0).variation != Variation::Rough
+    }
+
     /// Returns the first and the second derivative at a position (m) and time (s).
     pub(crate) fn values(&self, place: [f64; 3], t: f64) -> [f64; 2] {
         let jet = self.at(place, t);
@@ -161,10 +189,62 @@ impl Rates {
 
     fn at(&self, [x, y, z]: [f64; 3], t: f64) -> Jet {
         let [x, y, z, none] = [x, y, z, f64::NAN].map(Jet::constant);
-        let all = [x, y, z, Jet::time(t), none];
+        let all = [x, y, z, Jet::time(t), none, none];
         let given: Vec<Jet> = self.variables.iter().map(|&v| all[v]).collect();
         // The number of values is right, which is the only possible error.
         self.compiled.eval(&given).unwrap_or(none)
+    }
+}
+
+/// Jumps and kinks of an [`Expression`].
+#[derive(Debug)]
+pub(crate) struct Jumps {
+    compiled: FlatEx<Span, SpanOperators>,
+    /// Indices of its variables in [`VARIABLES`].
+    variables: Arc<[usize]>,
+}
+
+impl Jumps {
+    /// Returns the times of jumps and kinks at a position (m) in a range of times in ascending order, located to rounding;
+    /// `None` if there are more than `most`.
+    ///
+    /// The range is bisected as long as interval arithmetic allows a jump, so that no jump is missed however short the
+    /// time to the next one.
+    pub(crate) fn within(
+        &self,
+        place: [f64; 3],
+        [from, to]: [f64; 2],
+        most: usize,
+    ) -> Option<Vec<f64>> {
+        let mut found: Vec<f64> = Vec::new();
+        let mut open = vec![[from, to]];
+        while let Some([a, b]) = open.pop() {
+            if !self.may_jump(place, [a, b]) {
+                continue;
+            }
+            let middle = a + 0.5 * (b - a);
+            if middle <= a || middle >= b {
+                // Adjacent intervals that touch a jump name it twice.
+                if found.last().is_none_or(|last| *last < a) {
+                    found.push(b);
+                }
+                if found.len() > most {
+                    return None;
+                }
+                continue;
+            }
+            open.extend([[middle, b], [a, middle]]);
+        }
+        Some(found)
+    }
+
+    fn may_jump(&self, [x, y, z]: [f64; 3], [from, to]: [f64; 2]) -> bool {
+        let none = Span::constant(f64::NAN);
+        let [x, y, z] = [x, y, z].map(Span::constant);
+        let all = [x, y, z, Span::times(from, to), none, none];
+        let given: Vec<Span> = self.variables.iter().map(|&v| all[v]).collect();
+        // The number of values is right, which is the only possible error.
+        self.compiled.eval(&given).is_ok_and(|span| span.has_jump)
     }
 }
 
@@ -314,8 +394,45 @@ mod tests {
         let rough = ["step(t)", "x*abs(t)", "sin(floor(t))", "t^sign(t)"];
         for text in rough {
             let f = Expression::parse(text, &VARIABLES).unwrap();
-            assert!(f.rates().is_none(), "{text}");
+            assert!(!f.rates().unwrap().is_smooth(), "{text}");
         }
+    }
+
+    #[test]
+    fn jumps_are_located_to_rounding() {
+        for (text, expected) in [
+            ("step(t - 0.3)*sin(40*t)", vec![0.3]),
+            ("step(0.25 - t) + abs(t - 0.5)", vec![0.25, 0.5]),
+            ("floor(4*t)", vec![0.25, 0.5, 0.75, 1.0]),
+            (
+                "sign(sin(7*pi*t))",
+                (0..=7).map(|k| f64::from(k) / 7.0).collect(),
+            ),
+            ("step(t - 0.5)*step(0.5000001 - t)", vec![0.5, 0.500_000_1]),
+            ("step(cos(t))*exp(-t^2)/(1 + t)", vec![]),
+            ("step(t - x/20)", vec![0.1]),
+        ] {
+            let f = Expression::parse(text, &VARIABLES).unwrap();
+            let jumps = f.jumps().unwrap();
+            let found = jumps
+                .within([2.0, 3.0, 5.0], [0.0, 1.0 + 1e-9], 100)
+                .unwrap();
+            assert_eq!(found.len(), expected.len(), "{text}: {found:?}");
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!((found - expected).abs() < 1e-15, "{text}: {found}");
+            }
+        }
+        let many = Expression::parse("round(1e6*t)", &["t"])
+            .unwrap()
+            .jumps()
+            .unwrap();
+        assert!(many.within([0.0; 3], [0.0, 1.0], 100).is_none());
+        assert!(
+            Expression::parse("sin(t)", &["t"])
+                .unwrap()
+                .jumps()
+                .is_none()
+        );
     }
 
     #[test]

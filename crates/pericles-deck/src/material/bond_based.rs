@@ -15,6 +15,7 @@ use crate::constants::{
 use crate::correspondence;
 use crate::declaration::DeckValue;
 use crate::influence::influence;
+use crate::property::MaterialFunctions;
 use crate::reader::Table;
 use crate::set::SetNames;
 use crate::vocabulary::BY_STATE;
@@ -79,6 +80,7 @@ pub(super) fn read(
     };
     let damage = damage(&table);
     let form = form(&table);
+    let functions = MaterialFunctions::read(&table, body.frame.dimension);
     let rules = ConstantRules {
         state: body.state,
         sums: Sums::of(influence.as_ref(), form, body),
@@ -101,6 +103,7 @@ pub(super) fn read(
             fracture: fracture?,
         }),
         tuned,
+        functions: functions?,
         no_fail: no_fail?,
         scatter: scatter?,
         softening: softening?,

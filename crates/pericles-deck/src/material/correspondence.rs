@@ -12,6 +12,7 @@ use crate::constants::fracture_calibration;
 use crate::correspondence::{Correspondence, anisotropy, law, plasticity};
 use crate::criterion;
 use crate::declaration::DeckValue;
+use crate::property::MaterialFunctions;
 use crate::reader::Table;
 use crate::set::SetNames;
 use crate::state_based::SolidRules;
@@ -56,6 +57,7 @@ pub(super) fn read(
     );
     let damage = damage(&table);
     let form = form(&table);
+    let functions = MaterialFunctions::read(&table, body.frame.dimension);
     table.finish();
     let solid = LinearSolid {
         density: density?,
@@ -67,6 +69,7 @@ pub(super) fn read(
     };
     Some(Material {
         name: name?,
+        functions: functions?,
         no_fail: no_fail?,
         scatter: scatter?,
         surface_correction: SurfaceCorrection::None,

@@ -12,6 +12,7 @@ use crate::body::BodyRead;
 use crate::declaration::DeckTable;
 use crate::form::described;
 use crate::influence::{Setting, influence};
+use crate::property::{MaterialProperty, number_of};
 use crate::quantity::Quantity;
 use crate::reader::{Item, Table};
 use crate::region::Frame;
@@ -20,7 +21,7 @@ use crate::vocabulary::HORIZONS;
 
 pub(super) fn density(table: &Table<'_>) -> Option<f64> {
     let item = table.required("density");
-    item.and_then(|item| item.positive(Quantity::Density))
+    item.and_then(|item| number_of(&item, MaterialProperty::Density))
 }
 
 pub(super) fn volume_correction(table: &Table<'_>) -> Option<VolumeCorrection> {

@@ -83,6 +83,7 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
             names.push(name.into());
             let Material {
                 model,
+                functions,
                 tensile_strength,
                 strength_surface,
                 ..
@@ -90,6 +91,7 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
             Some(NamedMaterial {
                 name: name.into(),
                 model,
+                functions,
                 tensile_strength,
                 strength_surface,
             })

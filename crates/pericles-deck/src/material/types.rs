@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::scatter::Scatter;
 use super::softening::{BondSoftening, FailureSurface};
 use crate::correspondence::Correspondence;
+use crate::property::MaterialFunctions;
 use crate::state_based::StateBased;
 
 /// A material of a body.
@@ -24,6 +25,9 @@ pub struct Material {
     pub is_default: bool,
     /// Law, constants, horizon and failure.
     pub model: MaterialModel,
+    /// Properties that are functions; each multiplies the number of the model.
+    #[serde(default, skip_serializing_if = "MaterialFunctions::is_empty")]
+    pub functions: MaterialFunctions,
     /// Tuning result of the influence function, if it is tuned.
     #[serde(default, with = "crate::form")]
     pub tuned: Option<TunedTable>,
@@ -93,6 +97,7 @@ impl From<MaterialModel> for Material {
             name: None,
             is_default: true,
             model,
+            functions: MaterialFunctions::default(),
             tuned: None,
             no_fail: Vec::new(),
             surface_correction: SurfaceCorrection::default(),
@@ -114,6 +119,9 @@ pub struct NamedMaterial {
     pub name: String,
     /// Law, constants, horizon and failure; shared properties must equal those of the body's material.
     pub model: MaterialModel,
+    /// Properties that are functions; each multiplies the number of the model.
+    #[serde(default, skip_serializing_if = "MaterialFunctions::is_empty")]
+    pub functions: MaterialFunctions,
     /// Tensile strength from which the onset of softening follows, if it is given.
     #[serde(default, with = "crate::form")]
     pub tensile_strength: Option<TensileStrength>,

@@ -222,6 +222,16 @@ impl<'a> Table<'a> {
         found
     }
 
+    /// Returns the value of a key that has been requested before and is allowed.
+    pub(crate) fn read_before(&self, key: &'static str) -> Option<Item<'a>> {
+        let is_known = self.allowed.borrow().contains(&key);
+        let is_allowed = !self.forbidden.borrow().contains(&key);
+        match is_known && is_allowed {
+            true => self.optional(key),
+            false => None,
+        }
+    }
+
     /// Requires at least one of several keys.
     pub(crate) fn at_least_one(&self, keys: &[&str]) {
         if !keys.iter().any(|key| self.has(key)) {

@@ -424,6 +424,13 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["thermal={ expansion = 1e-5, file = 'temperatures.txt', reference = 293, function = { kind = 'ramp', duration = 1 } }"]),
     specimen(BAR, &["material.scatter={ distribution = 'weibull', of = 'fracture_energy', shape = 5, seed = 2 }"]),
     specimen(BAR, &["material.scatter={ shape = 5 }"]),
+    // Properties as functions.
+    specimen(BAR, &["material.density={ expression = '1 + x' }", "material.youngs_modulus={ expression = '1 + x' }", "material.fracture_energy={ expression = '1 + x' }"]),
+    specimen(BAR, &["material.critical_stretch={ expression = '1 + x' }"]),
+    specimen(BAR, &["thermal={ conductivity = { expression = '45 + x' }, specific_heat = { expression = '460 + x' }, temperature = 300, expansion = { expression = '1e-5 * (1 + x)' }, reference = 293, material = [{ name = 'default', conductivity = { expression = '40 + x' }, specific_heat = { expression = '400 + x' }, expansion = { expression = '2e-5 * (1 + x)' } }] }"]),
+    specimen(PLATE, &["material={ model = 'state-based', density = 1, youngs_modulus = { expression = '2 + x' }, poisson_ratio = 0.3, horizon_ratio = 3, yield_stress = { expression = '1 + x' } }"]),
+    specimen(PLATE, &["material={ model = 'correspondence', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, yield_stress = { table = [[300, 1], [400, 0.5]] } }"]),
+    specimen(PLATE, &["material={ model = 'correspondence', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'principal-stress', strength = { expression = '1 + x' } }"]),
     specimen(BAR, &["material.softening={ law = 'trilinear', onset_stretch = 1e-4, knee_force = 0.3, knee_position = 0.2 }"]),
     specimen(BAR, &["material.softening={ law = 'trilinear', onset_stretch = 1e-4 }"]),
     specimen(PLATE, &["material={ model = 'correspondence', density = 1, youngs_modulus = 2, poisson_ratio = 0.3, horizon_ratio = 3, failure = 'principal-stress', strength = 1 }"]),

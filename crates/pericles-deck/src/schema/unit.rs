@@ -24,7 +24,8 @@ pub fn unit_of_key(key: &str) -> &'static str {
             .find_map(|form| match form {
                 // The next part is a name.
                 Form::Names(definition) => Some((*definition, true)),
-                Form::Defined(definition) => Some((*definition, false)),
+                // A value may also be a number with a unit.
+                Form::Defined(definition) if parts.peek().is_some() => Some((*definition, false)),
                 _ => None,
             });
         if let Some((definition, is_named)) = definition {
@@ -54,6 +55,8 @@ mod tests {
             ("body.spacing", "m"),
             ("body.dx", "m"),
             ("material.youngs_modulus", "Pa"),
+            ("material.density", "kg/m3"),
+            ("thermal.expansion", "1/K"),
             ("material.E", "Pa"),
             ("materials.soft.fracture_energy", "J/m2"),
             ("material.poissons_ratio", ""),

@@ -13,6 +13,7 @@ use super::boundary::exterior_frequency;
 use super::damping::strongest;
 use super::discretisation::Discretisation;
 use super::discretise::discretise;
+use super::property::CONSTANT;
 use super::rejection::{at, at_path};
 use super::resources::Resources;
 use crate::signals::SignalRegistry;
@@ -35,9 +36,15 @@ pub fn assemble(
     model.check()?;
     discretisation.check(&model.body)?;
     let cracks = discretisation.cracks.clone();
+    let evaluated = Assembler::new(model).properties(&discretisation, resources)?;
+    let (properties, model) = match &evaluated {
+        Some((properties, model)) => (properties, model),
+        None => (&CONSTANT, model),
+    };
     let assembler = Assembler {
         model,
         cracks: &cracks,
+        properties,
     };
     let mut warnings = discretisation.warnings.clone();
     let Discretisation {
@@ -59,6 +66,8 @@ pub fn assemble(
     let place = &discretisation;
     let field = assembler.conduct(&parts, place, resources, &mut warnings)?;
     assembler.heat(&mut parts, place, resources, field.as_ref())?;
+    let computed = field.as_ref().map(|field| Arc::new(field.shared()) as _);
+    assembler.vary(&mut parts, place, resources, computed)?;
     let BodyParts {
         constants,
         others,
@@ -188,8 +197,10 @@ pub fn assemble(
         loads,
         temperature,
         warnings,
+        properties: properties.ranges(),
         damping,
         allow_unstable: model.time.allow_unstable,
+        model: evaluated.map(|(_, model)| model),
     })
 }
 

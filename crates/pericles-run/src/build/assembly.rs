@@ -7,7 +7,7 @@ use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::space::PointCloud;
 use pericles::time::{HighestFrequency, Integrator, State};
 use pericles::{PericlesError, Simulation, StopWhen, System};
-use pericles_deck::ModelWarning;
+use pericles_deck::{Model, ModelWarning};
 use pericles_heat::SharedField;
 use pericles_manifold::surface::Surface;
 use pericles_waves::ForceForm;
@@ -19,6 +19,7 @@ use super::exact::ExactReference;
 use super::loads::LoadReport;
 use super::mesh_body::Meshes;
 use super::open::OpenReport;
+use super::property::PropertyRange;
 use super::softening::MaterialSoftening;
 use super::step::damped_step;
 use crate::signals::SignalRegistry;
@@ -82,13 +83,22 @@ pub struct Assembly {
     pub temperature: Option<SharedField>,
     /// Warnings of the assembly.
     pub warnings: Vec<ModelWarning>,
+    /// Ranges of the properties of materials that are functions.
+    pub properties: Vec<PropertyRange>,
     /// The strongest damping of layers, 1/s.
     pub(super) damping: f64,
     /// Whether the run continues if its energy grows.
     pub(super) allow_unstable: bool,
+    /// The model with the mean values of properties that are functions; `None` without functions.
+    pub(super) model: Option<Model>,
 }
 
 impl Assembly {
+    /// Returns the assembled model with the mean values of properties that are functions.
+    pub fn with_means<'a>(&'a self, model: &'a Model) -> &'a Model {
+        self.model.as_ref().unwrap_or(model)
+    }
+
     /// Returns the largest stable step of the scheme, without a safety factor, s.
     pub fn stable_step(&self) -> Option<f64> {
         let limit = self.integrator.stability_limit()?;

@@ -167,7 +167,9 @@ impl Assembler<'_> {
             names.push(name.clone());
             let path = KeyPath::from("constraint").index(k);
             let points = self.members(sets, &motion.set, path.key("set"))?.clone();
-            let function = motion.function.smooth_function();
+            let function = motion
+                .function
+                .motion_function(motion.kind, self.model.time.end);
             let function = function.map_err(|fault| at_path(path.key("function"), fault))?;
             let add = || {
                 let along = self.axis_motions(&path, motion, cloud, &points)?;

@@ -9,7 +9,7 @@ use pericles::units::precise;
 use pericles::{PointScalar, System};
 use pericles_deck::{
     Body, BuildError, Caution, Component, ConductionScheme, ConductivityMean, Fault, KeyPath,
-    MaterialModel, ModelWarning, Remark, Solid, SolidShape, Thermal, ThermalAmplitude,
+    MaterialModel, ModelWarning, Property, Remark, Solid, SolidShape, Thermal, ThermalAmplitude,
     ThermalCondition,
 };
 use pericles_heat::{
@@ -23,6 +23,7 @@ use super::body::BodyParts;
 use super::discretisation::Discretisation;
 use super::loads::volume_of;
 use super::plausible_heat::check_radiation;
+use super::properties::{NOT_NEGATIVE, OfMaterial, POSITIVE};
 use super::rejection::{at, at_path};
 use super::resources::Resources;
 use super::thermal::Given;
@@ -46,16 +47,26 @@ impl Assembler<'_> {
             return Ok(None);
         };
         let cloud = &discretisation.cloud;
-        let conductivity = self.thermal_constant(
-            (thermal, conduction.conductivity),
-            |own| own.conductivity,
-            (solid, discretisation),
+        let conductivity = self.of_names(
+            thermal,
+            "conductivity",
+            (&conduction.conductivity, |own| own.conductivity.as_ref()),
+            solid,
+        );
+        let conductivity = self.of_materials(
+            &conductivity,
+            ("W/m/K", NOT_NEGATIVE),
+            solid,
+            discretisation,
         )?;
-        let specific_heat = self.thermal_constant(
-            (thermal, conduction.specific_heat),
-            |own| own.specific_heat,
-            (solid, discretisation),
-        )?;
+        let specific_heat = self.of_names(
+            thermal,
+            "specific_heat",
+            (&conduction.specific_heat, |own| own.specific_heat.as_ref()),
+            solid,
+        );
+        let specific_heat =
+            self.of_materials(&specific_heat, ("J/kg/K", POSITIVE), solid, discretisation)?;
         let horizons = self.conducting_horizons(solid, discretisation)?;
         let influence = match (&solid.material.model, &parts.constants) {
             (MaterialModel::Bonds(bonds), _) => bonds.influence.clone(),
@@ -151,27 +162,6 @@ impl Assembler<'_> {
         Err(at_path("thermal.scheme", fault))
     }
 
-    fn thermal_constant(
-        &self,
-        (thermal, default): (&Thermal, f64),
-        own: impl Fn(&pericles_deck::MaterialThermal) -> Option<f64>,
-        (solid, discretisation): (&Solid, &Discretisation),
-    ) -> Result<PointScalar, BuildError> {
-        let of_name = |name: &str| {
-            let found = thermal
-                .materials
-                .iter()
-                .find(|material| material.name == name);
-            found.and_then(&own).unwrap_or(default)
-        };
-        let all: Vec<f64> = self
-            .material_names(solid)
-            .into_iter()
-            .map(of_name)
-            .collect();
-        self.of_materials(&all, solid, discretisation)
-    }
-
     /// Returns the horizon of each point, if they differ: the horizons of the materials, divided by refinement ratios.
     fn conducting_horizons(
         &self,
@@ -183,10 +173,12 @@ impl Assembler<'_> {
             .materials
             .iter()
             .map(|other| other.model.horizon());
-        let all: Vec<f64> = std::iter::once(solid.material.horizon())
+        let all: Vec<Property> = std::iter::once(solid.material.horizon())
             .chain(others)
+            .map(Property::from)
             .collect();
-        let of_material = self.of_materials(&all, solid, discretisation)?;
+        let all: Vec<OfMaterial<'_>> = all.iter().map(OfMaterial::plain).collect();
+        let of_material = self.of_materials(&all, ("m", POSITIVE), solid, discretisation)?;
         let grids = &discretisation.grids;
         if matches!(of_material, PointScalar::Uniform(_)) && grids.ratios.len() == 1 {
             return Ok(None);

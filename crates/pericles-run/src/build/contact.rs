@@ -72,7 +72,7 @@ impl Assembler<'_> {
             let path = KeyPath::from("impactor").index(k);
             let (shape, pose) = self.impactor_shape(&path, impactor, resources, warnings)?;
             warnings.extend(small_impactor(&path, &shape, cloud));
-            let motion = impactor_motion(&path, impactor)?;
+            let motion = impactor_motion((&path, impactor), self.model.time.end)?;
             let one = Impactor::new(
                 impactor.name.clone(),
                 shape,
@@ -326,8 +326,8 @@ fn law(contact: &Contact) -> ContactLaw {
 }
 
 fn impactor_motion(
-    path: &KeyPath,
-    impactor: &pericles_deck::Impactor,
+    (path, impactor): (&KeyPath, &pericles_deck::Impactor),
+    end: f64,
 ) -> Result<ImpactorMotion, BuildError> {
     Ok(match &impactor.motion {
         pericles_deck::ImpactorMotion::Free {
@@ -357,7 +357,7 @@ fn impactor_motion(
             kind: *kind,
             amplitude: *amplitude,
             function: function
-                .smooth_function()
+                .motion_function(*kind, end)
                 .map_err(|fault| at_path(path.key("function"), fault))?,
         },
     })

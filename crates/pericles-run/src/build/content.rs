@@ -65,19 +65,19 @@ impl Assembly {
     /// # Errors
     /// The points of the body do not form a regular grid.
     pub fn interior<'a>(&'a self, model: &'a Model) -> Result<Interior<'a>, BuildError> {
-        Assembler::new(model).interior(self)
+        Assembler::new(self.with_means(model)).interior(self)
     }
 
     /// Returns the dispersion of plane waves; `None` for bodies without a grid or with several materials.
     pub fn plane_waves(&self, model: &Model) -> Option<PlaneWaves> {
-        Assembler::new(model).plane_waves(self)
+        Assembler::new(self.with_means(model)).plane_waves(self)
     }
 
     /// Warns of kernels that are less accurate than intended, and of loads, motions and initial values with waves
     /// that the grid does not resolve. Dispersion of the nonlocal model itself leads to no warning. Bodies without a
     /// grid or with several materials are not checked.
     pub fn check_waves(&self, model: &Model) -> Vec<ModelWarning> {
-        Assembler::new(model).check_waves(self)
+        Assembler::new(self.with_means(model)).check_waves(self)
     }
 }
 

@@ -90,9 +90,15 @@ impl Assembler<'_> {
                         };
                         return Err(at_path(path.key("function"), fault));
                     }
+                    let places: Vec<[f64; 3]> = points.iter().map(place).collect();
                     Some(AxisMotion::Trajectory {
-                        trajectory: Arc::new(self.trajectory(path, motion.kind, expression)?),
-                        places: points.iter().map(place).collect(),
+                        trajectory: Arc::new(self.trajectory(
+                            path,
+                            motion.kind,
+                            expression,
+                            &places,
+                        )?),
+                        places,
                     })
                 }
                 Some(Component::Expression(expression)) => {
@@ -116,16 +122,25 @@ impl Assembler<'_> {
         path: &KeyPath,
         kind: MotionKind,
         expression: &Expression,
+        places: &[[f64; 3]],
     ) -> Result<Motion, BuildError> {
         let ahead = match kind {
             MotionKind::Displacement => 0,
             MotionKind::Velocity => 1,
         };
         let course = Course::new(expression.clone());
-        if course.has_rates() {
-            return Ok(Motion { course, ahead });
+        if kind == MotionKind::Displacement && !course.is_smooth() {
+            return Err(at_path(path, course.rough()));
         }
-        Err(at_path(path, course.rough()))
+        let places = match expression.depends_on_place() {
+            true => places,
+            false => &places[..places.len().min(1)],
+        };
+        for place in places {
+            let checked = course.check_jumps(*place, self.model.time.end);
+            checked.map_err(|fault| at_path(path, fault))?;
+        }
+        Ok(Motion { course, ahead })
     }
 
     /// Creates the error for an expression that is NaN or infinite at a point.

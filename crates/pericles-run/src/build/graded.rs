@@ -26,12 +26,14 @@ impl Assembler<'_> {
         if composite.classes.is_some_and(MaterialPairs::scatters) {
             let (value, allowed) = (
                 "a distribution of strength".into(),
-                "critical stretches of bodies with refined parts or materials of different horizons cannot be scattered; omit it".into(),
+                "critical stretches of bodies with refined parts or materials of different horizons cannot be scattered or functions of position; use numbers".into(),
             );
-            return Err(at_path(
-                "material.scatter",
-                Fault::OutOfRange { value, allowed },
-            ));
+            let solid = self.model.body.solid();
+            let key = match solid.is_some_and(|solid| solid.material.scatter.is_some()) {
+                true => "material.scatter",
+                false => "material",
+            };
+            return Err(at_path(key, Fault::OutOfRange { value, allowed }));
         }
         if composite.softening.is_some() {
             let (value, allowed) = (

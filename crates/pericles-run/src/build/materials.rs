@@ -6,13 +6,14 @@ use pericles::material::{
 };
 use pericles::space::PointCloud;
 use pericles_deck::{
-    BuildError, Caution, Fault, InterfaceFailure, KeyPath, Material, MaterialModel, ModelWarning,
-    Remark, Solid,
+    BuildError, Caution, Fault, InterfaceFailure, KeyPath, Material, MaterialModel,
+    MaterialProperty, ModelWarning, Remark, Solid,
 };
 use pericles_waves::ForceForm;
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
+use super::property::multiply;
 use super::rejection::{at, at_path};
 use super::softening::MaterialSoftening;
 
@@ -123,7 +124,7 @@ impl<'m> Assembler<'m> {
         })
     }
 
-    /// Returns the factors of the critical stretch of all points, if strengths are scattered.
+    /// Returns the factors of the critical stretch of all points, if strengths are scattered or functions of position.
     pub(super) fn strengths(
         &self,
         solid: &Solid,
@@ -132,7 +133,8 @@ impl<'m> Assembler<'m> {
         let scatter = solid.material.scatter;
         let factors = scatter.map(|scatter| scatter.strength().factors(cloud));
         let factors = factors.transpose();
-        factors.map_err(|error| at("material.scatter", error))
+        let factors = factors.map_err(|error| at("material.scatter", error))?;
+        Ok(self.varying_strengths(factors))
     }
 
     /// Returns the interfaces between bond-based materials: for every pair its own table, completed by the table for
@@ -247,7 +249,8 @@ impl<'m> Assembler<'m> {
             .domain()
             .all(of_point.iter().all(|&number| number == 0))
         {
-            return Ok((None, PointScalar::Uniform(material.density())));
+            let uniform = PointScalar::Uniform(material.density());
+            return Ok((None, self.varying_density(uniform)));
         }
         if let Some(solid) = self.model.body.solid() {
             self.check_layers(solid, cloud, Some(&of_point), warnings);
@@ -259,7 +262,8 @@ impl<'m> Assembler<'m> {
                 number => others[usize::from(number) - 1].model.density(),
             })
             .collect();
-        Ok((Some(of_point), PointScalar::PerPoint(densities)))
+        let density = self.varying_density(PointScalar::PerPoint(densities));
+        Ok((Some(of_point), density))
     }
 
     /// Rejects points without an assignment, unless they have the material of the body.
@@ -303,6 +307,10 @@ impl<'m> Assembler<'m> {
                     stiffness[i as usize] = given;
                 }
             }
+        }
+        if let Some(factors) = self.properties.factors(MaterialProperty::YoungsModulus) {
+            stiffness.resize(cloud.len(), 1.0);
+            multiply(&mut stiffness, &factors);
         }
         Ok(stiffness)
     }

@@ -40,6 +40,9 @@ mod plausible;
 mod plausible_heat;
 mod points;
 mod program;
+mod properties;
+mod property;
+mod property_number;
 mod random;
 mod rejection;
 mod resources;
@@ -55,6 +58,7 @@ mod stop;
 mod surface;
 mod thermal;
 mod thin;
+mod varying;
 
 pub use assemble::{assemble, build};
 pub use assembly::Assembly;
@@ -70,6 +74,8 @@ pub use mesh_body::{MeshBody, Meshes};
 pub use open::OpenReport;
 pub(crate) use part::gathered;
 pub use program::Conditions;
+pub use property::PropertyRange;
+pub(crate) use property::shown;
 pub use resources::{
     FileError, MeshReader, OutlineReader, PointsReader, Polygons, Resources, SurfaceReader,
     TableReader,

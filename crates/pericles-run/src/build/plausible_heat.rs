@@ -3,7 +3,8 @@
 use pericles::space::PointCloud;
 use pericles::units::quantity;
 use pericles_deck::{
-    BuildError, Caution, Component, Fault, KeyPath, ModelWarning, Remark, Thermal, ThermalAmplitude,
+    BuildError, Caution, Component, Fault, KeyPath, ModelWarning, Property, Remark, Thermal,
+    ThermalAmplitude,
 };
 
 use super::assembler::Assembler;
@@ -87,9 +88,10 @@ impl Assembler<'_> {
         let own = thermal.materials.iter().enumerate();
         let own = own.filter_map(|(k, material)| {
             let key = key.key("material").index(k).key("expansion");
-            Some((key, material.expansion?))
+            Some((key, material.expansion.as_ref()?.number()?))
         });
-        let all = thermal.expansion.map(|value| (key.key("expansion"), value));
+        let all = thermal.expansion.as_ref().and_then(Property::number);
+        let all = all.map(|value| (key.key("expansion"), value));
         let large = all
             .into_iter()
             .chain(own)

@@ -3,7 +3,10 @@
 use pericles::material::{BondFailure, BondLimits, Materials};
 use pericles::operator::{Feature, Features};
 use pericles::{PericlesError, PointScalar};
-use pericles_deck::{BuildError, Fault, InterfaceFailure, KeyPath, ModelWarning, Solid};
+use pericles_deck::{
+    BuildError, FailureCriterion, Fault, InterfaceFailure, KeyPath, MaterialModel, ModelWarning,
+    Solid,
+};
 
 use super::assembler::Assembler;
 use super::discretisation::Discretisation;
@@ -58,11 +61,36 @@ impl Assembler<'_> {
                 materials.set_limits(pair, limits);
             }
         }
+        self.check_criteria(solid)?;
         if let Some(factors) = self.strengths(solid, cloud)? {
             let all = materials.unwrap_or_else(combination.uniform);
             materials = Some(all.with_strengths(factors));
         }
         Ok((materials, density))
+    }
+
+    /// Rejects failure criteria that depend on the temperature of bodies without temperatures.
+    fn check_criteria(&self, solid: &Solid) -> Result<(), BuildError> {
+        let own = (KeyPath::from("material"), &solid.material.model);
+        let others = self.model.materials.iter();
+        let others =
+            others.map(|other| (KeyPath::from("materials").key(&other.name), &other.model));
+        for (path, model) in std::iter::once(own).chain(others) {
+            let criterion = match model {
+                MaterialModel::StateBased(own) => own.criterion.as_ref(),
+                MaterialModel::Correspondence(own) => own.criterion.as_ref(),
+                MaterialModel::Bonds(_) => None,
+            };
+            let heated = matches!(criterion, Some(FailureCriterion::Expression(expression)) if expression.depends_on_temperature());
+            if heated && !self.expands() {
+                let fault = Fault::OutOfRange {
+                    value: "a criterion of the temperature".into(),
+                    allowed: "allowed: with [thermal] and its `expansion`, which may be 0".into(),
+                };
+                return Err(at_path(path.key("criterion"), fault));
+            }
+        }
+        Ok(())
     }
 
     /// Rejects features of a body for which `rejection` gives a reason, and force kernels that do not support its material.

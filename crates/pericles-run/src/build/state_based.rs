@@ -5,8 +5,8 @@ use pericles::material::{LinearSolidConstants, SolidSurface, StressState, Surfac
 use pericles::operator::{Feature, LinearSolidBody};
 use pericles::space::PointCloud;
 use pericles_deck::{
-    BuildError, Caution, FailureCriterion, KeyPath, MaterialModel, ModelWarning, Remark, Solid,
-    StateBased,
+    BuildError, Caution, FailureCriterion, KeyPath, MaterialModel, MaterialProperty, ModelWarning,
+    Remark, Solid, StateBased,
 };
 use pericles_solids::inelastic::{InelasticSolidBody, Inelasticity};
 
@@ -98,7 +98,10 @@ impl Assembler<'_> {
             .heated_form(material.form)?
             .of_bonds()
             .unwrap_or_default();
-        let bonds = match laws.iter().all(Inelasticity::is_elastic) {
+        let criteria = all.iter().filter_map(|own| own.criterion.as_ref());
+        let varies = self.properties.vary(MaterialProperty::YoungsModulus)
+            || criteria.into_iter().any(|criterion| criterion.varies());
+        let bonds = match laws.iter().all(Inelasticity::is_elastic) && !varies {
             true => body.operator(form),
             false => {
                 let (elastic, laws) = (body, &laws[..]);

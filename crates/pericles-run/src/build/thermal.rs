@@ -9,7 +9,9 @@ use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
 use pericles::units::quantity;
 use pericles::{PointScalar, Temperature, ThermalExpansion};
-use pericles_deck::{Body, BuildError, Component, Fault, KeyPath, Scheme, Solid, Thermal};
+use pericles_deck::{
+    Body, BuildError, Component, Fault, KeyPath, MaterialThermal, Property, Scheme, Solid, Thermal,
+};
 use pericles_heat::DiffusingField;
 use pericles_waves::{AssembledForce, ForceForm};
 
@@ -17,6 +19,7 @@ use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
+use super::properties::{FINITE, OfMaterial};
 use super::rejection::{at, at_material, at_path};
 use super::resources::Resources;
 
@@ -90,7 +93,7 @@ impl Assembler<'_> {
             return Ok(());
         };
         self.check_thermal_materials(thermal, solid)?;
-        let Some(expansion) = thermal.expansion.filter(|_| self.expands()) else {
+        let Some(expansion) = thermal.expansion.as_ref().filter(|_| self.expands()) else {
             return Ok(());
         };
         if solid.material.surface_correction == SurfaceCorrection::Ghosts {
@@ -108,17 +111,7 @@ impl Assembler<'_> {
         let coefficient = self.coefficients((thermal, expansion), solid, parts, discretisation)?;
         let temperature: Arc<dyn Temperature> = match field {
             Some(field) => Arc::new(field.shared()),
-            None => {
-                let function = thermal.function.function();
-                let value = self.temperature(thermal, cloud, resources);
-                let value = discretisation.agreed(value)?;
-                Arc::new(Prescribed {
-                    cloud: cloud.clone(),
-                    value,
-                    function: function.map_err(|fault| at_path(path.key("function"), fault))?,
-                    reference,
-                })
-            }
+            None => self.prescribed_temperature(thermal, discretisation, resources)?,
         };
         let expansion = ThermalExpansion::new(cloud.clone(), temperature, reference, coefficient);
         let expansion = expansion.map_err(|error| at("thermal", error))?;
@@ -128,24 +121,77 @@ impl Assembler<'_> {
             .map_err(|error| at("thermal", error))
     }
 
+    /// Returns the prescribed temperature, or the initial one of heat conduction.
+    pub(super) fn prescribed_temperature(
+        &self,
+        thermal: &Thermal,
+        discretisation: &Discretisation,
+        resources: &Resources<'_>,
+    ) -> Result<Arc<dyn Temperature>, BuildError> {
+        let (cloud, path) = (&discretisation.cloud, KeyPath::from("thermal.function"));
+        let function = thermal.function.function();
+        let value = self.temperature(thermal, cloud, resources);
+        Ok(Arc::new(Prescribed {
+            cloud: cloud.clone(),
+            value: discretisation.agreed(value)?,
+            function: function.map_err(|fault| at_path(path, fault))?,
+            // Functions of time require a reference temperature.
+            reference: thermal.reference.unwrap_or_default(),
+        }))
+    }
+
     /// Returns the expansion coefficient of every point. In plane strain the out-of-plane strain is prevented, so
     /// that the in-plane thermal stretch is larger by the factor 1 + ν for bond-based and state-based materials.
     fn coefficients(
         &self,
-        (thermal, expansion): (&Thermal, f64),
+        (thermal, expansion): (&Thermal, &Property),
         solid: &Solid,
         parts: &BodyParts,
         discretisation: &Discretisation,
     ) -> Result<PointScalar, BuildError> {
         let constants = parts.constants.iter().chain(&parts.others);
-        let of_material = |(name, constants): (&str, &MaterialConstants)| {
-            let own = thermal.materials.iter().find(|own| own.name == name);
-            let alpha = own.and_then(|own| own.expansion).unwrap_or(expansion);
-            alpha * in_plane(constants, solid.state)
+        let all = self.of_names(
+            thermal,
+            "expansion",
+            (expansion, |own| own.expansion.as_ref()),
+            solid,
+        );
+        let all = all
+            .into_iter()
+            .zip(constants)
+            .map(|(own, constants)| OfMaterial {
+                factor: in_plane(constants, solid.state),
+                ..own
+            });
+        let all: Vec<OfMaterial<'_>> = all.collect();
+        self.of_materials(&all, ("1/K", FINITE), solid, discretisation)
+    }
+
+    /// Returns a thermal property of all materials, the body's material first: their own one, or that of all materials.
+    pub(super) fn of_names<'t>(
+        &self,
+        thermal: &'t Thermal,
+        key: &'static str,
+        (all, own): (&'t Property, fn(&MaterialThermal) -> Option<&Property>),
+        solid: &Solid,
+    ) -> Vec<OfMaterial<'t>> {
+        let path = KeyPath::from("thermal");
+        let of_name = |name: &str| {
+            let mut given = thermal.materials.iter().enumerate();
+            let found = given.find(|(_, material)| material.name == name);
+            let found = found
+                .and_then(|(k, material)| Some((path.key("material").index(k), own(material)?)));
+            let (path, property) = found.unwrap_or((path.clone(), all));
+            OfMaterial {
+                path: path.key(key),
+                property,
+                factor: 1.0,
+            }
         };
-        let names = self.material_names(solid).into_iter();
-        let all: Vec<f64> = names.zip(constants).map(of_material).collect();
-        self.of_materials(&all, solid, discretisation)
+        self.material_names(solid)
+            .into_iter()
+            .map(of_name)
+            .collect()
     }
 
     /// Returns the names of all materials, the body's material first.
@@ -154,25 +200,6 @@ impl Assembler<'_> {
         std::iter::once(solid.material.name())
             .chain(others)
             .collect()
-    }
-
-    /// Returns a constant of every point from the constants of all materials.
-    pub(super) fn of_materials(
-        &self,
-        all: &[f64],
-        solid: &Solid,
-        discretisation: &Discretisation,
-    ) -> Result<PointScalar, BuildError> {
-        let place = (&*discretisation.cloud, &discretisation.sets);
-        // Assignments have been checked before.
-        let (of_point, _) = self.points_of_materials(&solid.material, place, &mut Vec::new())?;
-        Ok(match of_point {
-            Some(of_point) if all.iter().any(|value| *value != all[0]) => {
-                let of = |&number: &u8| all.get(usize::from(number)).copied().unwrap_or(all[0]);
-                PointScalar::PerPoint(of_point.iter().map(of).collect())
-            }
-            _ => PointScalar::Uniform(all.first().copied().unwrap_or_default()),
-        })
     }
 
     /// Rejects constants of materials that do not exist.

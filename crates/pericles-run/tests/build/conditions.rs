@@ -121,10 +121,34 @@ fn expressions_depend_on_position_and_time() {
     );
 }
 
+/// The displacement is the integral of a velocity that begins and ends with jumps, at a time that depends on the position.
+#[test]
+fn velocities_may_jump() {
+    let burst = "0.1*step(t - 0.2)*step(0.4 + x - t)";
+    let deck = EXPRESSIONS
+        .replace("x*cos(3*t)", burst)
+        .replace("until = 0.5", "");
+    let model = build(&deck);
+    let (start, mut simulation) = (model.state.u[0], model.simulation());
+    simulation
+        .run(|simulation| {
+            let state = simulation.state();
+            let expected = start + 0.1 * (state.t.min(0.45) - 0.2).max(0.0);
+            assert!((state.u[0] - expected).abs() < 1e-15, "{}", state.t);
+            pericles::Control::Continue
+        })
+        .unwrap();
+}
+
 #[test]
 fn invalid_expressions_of_motions_are_rejected() {
     let cases = [
-        ("x*cos(3*t)", "x*floor(t)", "has no derivative in time"),
+        ("1e-2*x*t^2", "x*floor(t)", "has no derivative in time"),
+        (
+            "x*cos(3*t)",
+            "round(1e9*t)",
+            "more than 10000 jumps or kinks within the run",
+        ),
         ("1e-3*exp(-(x/0.2)^2)", "sqrt(0.5-x)", "is NaN or infinite"),
         ("x*sin(t)", "1/(t*x)", "is NaN or infinite"),
     ];

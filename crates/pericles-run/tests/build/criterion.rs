@@ -86,3 +86,60 @@ fn constants_describe_the_criterion_and_the_stencil_is_rejected() {
     let again: pericles_deck::Model = serde_json::from_str(&model).unwrap();
     assert_eq!(again, parse(&text).model);
 }
+
+/// The strength of a bar at rest under a uniform strain decreases at a position, time or temperature.
+#[test]
+fn criteria_may_depend_on_position_time_and_temperature() {
+    for model in ["state-based", "correspondence"] {
+        let deck = |change: &str| {
+            format!(
+                r#"
+body = {{ shape = "bar", length = 20, spacing = 1 }}
+material = {{ model = "{model}", density = 1e9, youngs_modulus = 10, horizon_ratio = 3, failure = "expression", criterion = "0.9*stretch/1e-3 + 0.2*{change}" }}
+initial = [{{ displacement = {{ expression = "1e-3*x" }} }}]
+thermal = {{ expansion = 0, reference = 300, temperature = {{ expression = "300 + 10*t" }} }}
+time = {{ end = 1, dt = 0.1 }}
+"#
+            )
+        };
+        let run = |change: &str| {
+            let mut run = build(&deck(change)).simulation();
+            let mut times = Vec::new();
+            run.run(|now| {
+                if now.system().operator().broken_bonds() > 0 {
+                    times.push(now.state().t);
+                }
+                Control::Continue
+            })
+            .unwrap();
+            (times, run)
+        };
+        assert!(run("step(-1)").0.is_empty());
+        let (times, right) = run("step(x - 10.1)");
+        assert!(!times.is_empty());
+        let mut damage = vec![0.0; 20];
+        right.system().operator().damage_into(&mut damage);
+        // Bonds of up to 3.5 spacings whose centres are at x > 10.1 reach points at x > 8.
+        assert!(
+            damage[..8].iter().all(|damage| *damage == 0.0),
+            "{damage:?}"
+        );
+        assert!(
+            damage[12..].iter().all(|damage| *damage > 0.9),
+            "{damage:?}"
+        );
+        for change in ["step(t - 0.45)", "step(temperature - 304.5)"] {
+            let (times, _) = run(change);
+            assert!(
+                (times[0] - 0.5).abs() < 1e-9,
+                "{model}, {change}: {times:?}"
+            );
+        }
+    }
+    let unheated = "body = { shape = \"bar\", length = 20, spacing = 1 }\nmaterial = { model = \"state-based\", density = 1, youngs_modulus = 10, horizon_ratio = 3, failure = \"expression\", criterion = \"stress_1 + temperature\" }\ntime = { end = 1 }";
+    let message = rejection(unheated).to_string();
+    assert!(
+        message.contains("a criterion of the temperature"),
+        "{message}"
+    );
+}

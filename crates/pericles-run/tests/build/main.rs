@@ -33,6 +33,7 @@ mod plate;
 mod plausible;
 mod points;
 mod program;
+mod properties;
 mod radiation;
 mod refined;
 mod schemes;

@@ -1,13 +1,16 @@
 //! The force state of correspondence materials.
 
+use std::borrow::Cow;
+
 use pericles::lanes::{F64x8, Lanes};
 use pericles::operator::FiniteStrain;
 
+use super::classical::ClassicalSolid;
 use super::control::Control;
 use super::material::CorrespondenceConstants;
 use super::plasticity::History;
 use crate::solid::ShapeTensor;
-use crate::solid::{Bond, End, Family, HistorySize, NextHistory, Point, Solid, State};
+use crate::solid::{Bond, End, Family, HistorySize, NextHistory, Point, Solid, State, YieldScale};
 use crate::tensor::{
     Matrix, combination, determinant, in_space, principal_axes, product, transpose, unit,
 };
@@ -69,6 +72,13 @@ impl<const D: usize> PointShape<D> {
     }
 }
 
+/// Returns the factor of the control of zero-energy modes at an accumulated plastic strain after the history.
+fn control_ratio(point: &ClassicalSolid, history: &History, accumulated: f64) -> f64 {
+    let ratio = point.secant_ratio(accumulated);
+    // A yield stress that grows as a body cools does not restore the control, which would create energy.
+    ratio.min(history.ratio)
+}
+
 /// Returns row and column of the components of a symmetric tensor, the diagonal first.
 fn places<const D: usize>() -> impl Iterator<Item = (usize, usize)> {
     let diagonal = (0..D).map(|a| (a, a));
@@ -88,11 +98,15 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
         let shape = at.shape;
         let gradient = product(moment, &shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        let solid = self.0.point.expanded(1.0 + at.thermal);
+        let point = self.point_at(at);
+        let solid = point.expanded(1.0 + at.thermal);
         let history = self.history_at(at);
         let state = solid.stress(&f, &history);
-        let accumulated = history.accumulated + if is_frozen { 0.0 } else { state.flow };
-        let control = shape.control.scaled(self.0.point.secant_ratio(accumulated));
+        let ratio = match is_frozen {
+            true => history.ratio,
+            false => control_ratio(&point, &history, history.accumulated + state.flow),
+        };
+        let control = shape.control.scaled(ratio);
         shape.values_into(&state.stress, &gradient, &control, out.values);
         determinant(&in_space(&f, 1.0)) - 1.0
     }
@@ -108,13 +122,14 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
         let shape = at.shape;
         let [gradient, change] = moments.map(|moment| product(moment, &shape.inverse));
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        let solid = self.0.point.expanded(1.0 + at.thermal);
+        let point = self.point_at(at);
+        let solid = point.expanded(1.0 + at.thermal);
         let history = self.history_at(at);
         let flow = match self.0.point.plasticity {
             Some(_) => solid.stress(&f, &history).flow,
             None => 0.0,
         };
-        let ratio = self.0.point.secant_ratio(history.accumulated + flow);
+        let ratio = control_ratio(&point, &history, history.accumulated + flow);
         let control = shape.control.scaled(ratio);
         let stress = solid.stress_change(&f, &change, &history);
         shape.values_into(&stress, &change, &control, out.values);
@@ -132,14 +147,15 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
     ) -> f64 {
         let gradient = product(moment, &at.shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        let solid = self.0.point.expanded(1.0 + at.thermal);
+        let point = self.point_at(at);
+        let solid = point.expanded(1.0 + at.thermal);
         let before = self.history_at(at);
         let (mut history, work) = solid.advanced(&f, &before);
         history.control = 0.5 * at.shape.control.contraction(left);
+        history.ratio = control_ratio(&point, &before, history.accumulated);
         history.keep(next.history);
         // With Z in force at both ends of a step, the loss is ½ (Z_before − Z_after) z_before z_after.
-        let ratio = |history: &History| self.0.point.secant_ratio(history.accumulated);
-        let softened = ratio(&before) - ratio(&history);
+        let softened = before.ratio - history.ratio;
         at.shape.share * work + softened * 0.5 * (before.control + history.control)
     }
 
@@ -177,6 +193,17 @@ impl<const TENSOR: bool> ForceState<TENSOR> {
             }
         }
         left
+    }
+
+    /// Returns the solid with the plastic constants of a point.
+    fn point_at<S, const D: usize>(&self, at: &Point<'_, S, D>) -> Cow<'_, ClassicalSolid> {
+        match &self.0.point.plasticity {
+            Some(plasticity) if at.yields != YieldScale::ONE => Cow::Owned(ClassicalSolid {
+                plasticity: Some(plasticity.scaled(at.yields)),
+                ..self.0.point
+            }),
+            _ => Cow::Borrowed(&self.0.point),
+        }
     }
 
     fn history_at<S, const D: usize>(&self, at: &Point<'_, S, D>) -> History {
@@ -301,10 +328,11 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         let moment = at.family.moment::<T>(&at.family);
         let gradient = product(&moment, &shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        let solid = self.0.point.expanded(1.0 + at.thermal);
+        let point = self.point_at(at);
+        let solid = point.expanded(1.0 + at.thermal);
         let history = self.history_at(at);
         let state = solid.stress(&f, &history);
-        let ratio = (self.0.point).secant_ratio(history.accumulated + state.flow);
+        let ratio = control_ratio(&point, &history, history.accumulated + state.flow);
         let control = (shape.control).contraction(&Self::unresolved::<T, D>(at, &gradient));
         shape.share * state.energy + ratio * 0.5 * control
     }
@@ -314,11 +342,12 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         let moment = at.family.moment::<F64x8>(&at.family);
         let gradient = product(&moment, &at.shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        let solid = self.0.point.expanded(1.0 + at.thermal);
+        let point = self.point_at(at);
+        let solid = point.expanded(1.0 + at.thermal);
         let history = self.history_at(at);
         let elastic = solid.stress(&f, &history).energy;
         let (_, work) = solid.advanced(&f, &history);
-        let ratio = self.0.point.secant_ratio(history.accumulated);
+        let ratio = history.ratio;
         let left = Self::unresolved::<F64x8, D>(at, &gradient);
         let control = at.shape.control.contraction(&left);
         at.shape.share * (elastic + work) + ratio * 0.5 * control
@@ -380,7 +409,8 @@ impl<const TENSOR: bool, const D: usize> Solid<D> for ForceState<TENSOR> {
         let moment = at.family.moment::<F64x8>(&at.family);
         let gradient = product(&moment, &at.shape.inverse);
         let f = combination(1.0, &unit::<D>(), 1.0, &gradient);
-        let solid = self.0.point.expanded(1.0 + at.thermal);
+        let point = self.point_at(at);
+        let solid = point.expanded(1.0 + at.thermal);
         let state = solid.stress(&f, &self.history_at(at));
         let volume = determinant(&in_space(&f, state.across));
         let stress = product(&state.stress, &transpose(&f));

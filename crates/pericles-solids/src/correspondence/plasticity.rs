@@ -7,6 +7,7 @@
 //! for any rotation.
 
 use super::law::Moduli;
+use crate::solid::YieldScale;
 use crate::tensor::{
     Matrix, combination, determinant, inverse, matrix, principal_axes, product, symmetric,
     transpose,
@@ -35,6 +36,8 @@ pub struct History {
     pub across: f64,
     /// Energy density of the control of zero-energy modes at the end of the last step for the elastic material, J/m³.
     pub control: f64,
+    /// Factor of the control of zero-energy modes at the end of the last step, which only decreases.
+    pub ratio: f64,
 }
 
 impl Default for History {
@@ -45,6 +48,7 @@ impl Default for History {
             accumulated: 0.0,
             across: 1.0,
             control: 0.0,
+            ratio: 1.0,
         }
     }
 }
@@ -54,7 +58,7 @@ const PLACES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0,
 
 impl History {
     /// Numbers stored per point.
-    pub(super) const KEPT: usize = 9;
+    pub(super) const KEPT: usize = 10;
 
     pub(super) fn of(kept: &[f64]) -> Self {
         Self {
@@ -62,6 +66,7 @@ impl History {
             accumulated: kept[6],
             across: kept[7],
             control: kept[8],
+            ratio: kept[9],
         }
     }
 
@@ -70,6 +75,7 @@ impl History {
         kept[6] = self.accumulated;
         kept[7] = self.across;
         kept[8] = self.control;
+        kept[9] = self.ratio;
     }
 
     fn inverse_plastic(&self) -> Matrix<3> {
@@ -83,6 +89,14 @@ impl History {
 }
 
 impl Plasticity {
+    /// Returns the plasticity of a point whose constants are multiplied by factors.
+    pub(super) fn scaled(&self, scale: YieldScale) -> Self {
+        Self {
+            yield_stress: scale.stress * self.yield_stress,
+            hardening: scale.hardening * self.hardening,
+        }
+    }
+
     /// Returns an error if a constant is out of range.
     ///
     /// # Errors
@@ -244,6 +258,7 @@ impl Returned {
             accumulated: history.accumulated + self.increment,
             across,
             control: history.control,
+            ratio: history.ratio,
         };
         (next, plasticity.work(history.accumulated, self.increment))
     }

@@ -129,7 +129,7 @@ impl<K: Kinematics, const D: usize> Solid<D> for InelasticSolid<K> {
             Inelasticity::Plastic(law) => {
                 let step = at.plastic::<T>();
                 let [whole, theta] = at.dilatations(step.extension);
-                let flow = T::splat(1.0 - step.trial.factor(law));
+                let flow = T::splat(1.0 - step.trial.factor(&law.scaled(point.yields)));
                 for batch in 0..family.batches() {
                     let [_, stretch] = bond::<T, K, D>(family, batch);
                     let elastic = stretch - point.bond_history::<T>(batch, INELASTIC);
@@ -169,8 +169,8 @@ impl<K: Kinematics, const D: usize> Solid<D> for InelasticSolid<K> {
                 (1.0 - relaxed, relaxed, None)
             }
             Inelasticity::Plastic(law) => {
-                let step = at.plastic::<T>();
-                let factor = step.trial.factor(law);
+                let (step, law) = (at.plastic::<T>(), law.scaled(point.yields));
+                let factor = step.trial.factor(&law);
                 (factor, 1.0 - factor, Some((law, step)))
             }
         };
@@ -294,7 +294,7 @@ impl<K: Kinematics, const D: usize> Solid<D> for InelasticSolid<K> {
             }
             Inelasticity::Plastic(law) => {
                 let PlasticStep { trial, mean, .. } = at.plastic::<T>();
-                let factor = trial.factor(law);
+                let factor = trial.factor(&law.scaled(point.yields));
                 for batch in 0..family.batches() {
                     let [weight, stretch] = bond::<T, K, D>(family, batch);
                     let last = point.bond_history::<T>(batch, LAST);

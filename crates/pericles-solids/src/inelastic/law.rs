@@ -3,6 +3,8 @@
 use pericles::material::StressState;
 use pericles::{PericlesError, Result, positive};
 
+use crate::solid::YieldScale;
+
 /// Inelastic law of the deviatoric part of a linear peridynamic solid; its dilatation is elastic.
 ///
 /// The deviatoric extension of a bond with extension e is e_d = e − θ r/D, with the dilatation θ of the point
@@ -43,6 +45,16 @@ pub struct Yield {
     pub stress: f64,
     /// Isotropic hardening H, Pa: the yield stress is σ_y + H ε_p, with the equivalent plastic strain ε_p.
     pub hardening: f64,
+}
+
+impl Yield {
+    /// Returns the criterion of a point whose constants are multiplied by factors.
+    pub(super) fn scaled(&self, scale: YieldScale) -> Self {
+        Self {
+            stress: scale.stress * self.stress,
+            hardening: scale.hardening * self.hardening,
+        }
+    }
 }
 
 /// Largest number of terms of a relaxation function.

@@ -160,7 +160,7 @@ impl<K: Kinematics, const D: usize> At<'_, K, D> {
         }
         PlasticStep {
             trial: Trial {
-                strength: point.shape.strength,
+                strength: point.yields.stress * point.shape.strength,
                 strain: point.history[PLASTIC_STRAIN],
                 norm: self.stiffness * sum(norm).sqrt(),
                 equivalent: (mean_square(D) / point.shape.volume * sum(square)).sqrt(),

@@ -320,7 +320,8 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         let Some(at) = self.point(i, t, heat, rows) else {
             return [0.0; 2];
         };
-        let energy = self.material(i).potential(&at);
+        let factor = self.stiffness_of(i);
+        let energy = factor * self.material(i).potential(&at);
         if velocities.is_empty() {
             return [energy, 0.0];
         }
@@ -332,7 +333,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
                 power = power + bond.weight * pull[c] * moved[c];
             }
         });
-        [energy, power.sum()]
+        [energy, factor * power.sum()]
     }
 
     /// Sets the stored numbers of the points `on` to the end of a step, and adds the energy that they dissipate.

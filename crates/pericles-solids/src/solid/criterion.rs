@@ -6,7 +6,7 @@
 
 use pericles::domain::Field;
 use pericles::lanes::{F64x8, LANES, Row};
-use pericles::material::BondState;
+use pericles::material::{BondPlace, BondState};
 use pericles::operator::{Kinematics, PointSubset};
 use pericles::parallel::for_each_point;
 
@@ -46,7 +46,9 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             let Some(at) = self.point(i, t, heat, rows) else {
                 return [[[0.0; D]; D]; 2];
             };
+            let factor = self.stiffness_of(i);
             let stress = self.material(i).stress(&at);
+            let stress = stress.map(|row| row.map(|entry| factor * entry));
             let inverse = ShapeTensor::of(&at.family).inverse();
             let strain = inverse.map_or([[0.0; D]; D], |inverse| {
                 let gradient = product(&at.family.moment::<F64x8>(&at.family), &inverse);
@@ -75,14 +77,34 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
         let ghosts = self.cloud.domain().ghosts(&own);
         let (tensors, sites) = (Field::new(&own, &ghosts), self.bonds.list().sites());
         let tensor = |slot: usize, point: usize| tensors.entry(2 * D * D, slot, point);
+        let varies = self.materials.criteria().vary();
+        let expansion = self.expansion.as_ref().filter(|_| varies);
+        let temperatures = expansion.map(|expansion| expansion.temperatures(t));
+        let place_of = |bond: &SingleBond<D>, ends: [usize; 2], t: f64| {
+            let mut place = self.cloud.point(ends[0]);
+            for (x, xi) in place.iter_mut().zip(bond.xi) {
+                *x += 0.5 * xi;
+            }
+            let mean = |all: &Vec<f64>| 0.5 * (all[ends[0]] + all[ends[1]]);
+            BondPlace {
+                place,
+                t,
+                temperature: temperatures.as_ref().map_or(0.0, mean),
+            }
+        };
         self.entries_of(on, |i, found| {
             let family = self.family(i, rows);
             let here = family.site();
             family.for_each(|bond| {
                 let state = || {
                     let eta = self.motion(bond);
+                    let j = sites.point(bond.site);
+                    let at = match varies {
+                        true => place_of(bond, [i, j], t),
+                        false => BondPlace::default(),
+                    };
                     let (xi, eta) = heat.expanded(sites, [here, bond.site], bond.xi, eta);
-                    BondState::between::<D>(tensor, [i, sites.point(bond.site)], [xi, eta])
+                    BondState::between::<D>(tensor, [i, j], [xi, eta], at)
                 };
                 let over = self.materials.failure_index(here, bond.site, state) > limit;
                 if over && self.bonds.list().may_break(bond.entry) {

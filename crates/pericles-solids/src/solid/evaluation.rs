@@ -18,13 +18,37 @@ use super::loops::{Ends, FirstLoop, SecondLoop, force_rows, state_rows};
 impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
     /// Returns the thermal stretches at a time.
     pub(super) fn heat_at(&self, t: f64) -> Heat {
-        let expansion = self.expansion.as_ref();
-        Heat(expansion.map(|expansion| expansion.stretches(t)))
+        let (expansion, yields) = (self.expansion.as_ref(), self.yields.as_ref());
+        Heat {
+            stretches: expansion.map(|expansion| expansion.stretches(t)),
+            yields: yields.map(|factor| factor.at(t)),
+        }
     }
 
-    /// Returns the thermal stretches at the time of the last force evaluation.
+    /// Returns the thermal stretches at a time, with the yield stresses of the last stored numbers: the energy changes
+    /// with the temperature at fixed displacements by the thermal stretch only.
+    pub(super) fn heat_of_energy(&self, t: f64) -> Heat {
+        let expansion = self.expansion.as_ref();
+        Heat {
+            stretches: expansion.map(|expansion| expansion.stretches(t)),
+            ..self.latest_heat()
+        }
+    }
+
+    /// Returns the thermal stretches at the time of the last force evaluation, and the yield stresses at that of the last
+    /// stored numbers.
     pub(super) fn latest_heat(&self) -> Heat {
-        Heat(self.expansion.as_ref().map(ThermalExpansion::latest))
+        let yields = self.yields.as_ref();
+        Heat {
+            stretches: self.expansion.as_ref().map(ThermalExpansion::latest),
+            yields: yields.map(|factor| factor.at(self.latest_time())),
+        }
+    }
+
+    /// Returns the elastic moduli of a point relative to those of its material.
+    #[inline(always)]
+    pub(super) fn stiffness_of(&self, i: usize) -> f64 {
+        self.stiffness.get(i).copied().unwrap_or(1.0)
     }
 
     /// Returns rows of displacements by site.
@@ -181,6 +205,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
     /// Returns the energy density of a point, J/m³.
     pub(super) fn energy_of(&self, i: usize, t: f64, heat: &Heat, u: &[Row]) -> f64 {
         let at = self.point(i, t, heat, u);
-        at.map_or(0.0, |at| self.material(i).energy::<F64x8>(&at))
+        let energy = at.map_or(0.0, |at| self.material(i).energy::<F64x8>(&at));
+        self.stiffness_of(i) * energy
     }
 }

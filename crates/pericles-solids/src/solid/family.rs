@@ -4,6 +4,7 @@ use pericles::lanes::{F64x8, LANES, Lanes, Row};
 use pericles::operator::Kinematics;
 
 use super::bonds::Bonds;
+use super::heat::YieldScale;
 use crate::tensor::Matrix;
 
 /// The bonds of a point, at a displacement.
@@ -286,6 +287,8 @@ pub struct Point<'a, S, const D: usize> {
     pub dt: f64,
     /// Thermal stretch τ: the stress-free length of a bond is (1 + τ) |ξ|.
     pub thermal: f64,
+    /// Yield stress and hardening modulus relative to those of the material.
+    pub yields: YieldScale,
 }
 
 impl<S, const D: usize> Clone for Point<'_, S, D> {

@@ -10,7 +10,7 @@ use pericles::operator::pool::Pool;
 use pericles::operator::{AssembledBonds, BondForm, InstructionSet};
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
-use pericles::{PericlesError, Result, ThermalExpansion, saved};
+use pericles::{PericlesError, Result, ThermalExpansion, YieldFactor, saved};
 
 use super::Solid;
 use super::body::SolidBody;
@@ -48,6 +48,10 @@ pub struct SolidForce<S: Solid<D>, const D: usize> {
     pub(super) inverted: Option<(usize, f64)>,
     /// Thermal expansion, if the body is heated.
     pub(super) expansion: Option<ThermalExpansion>,
+    /// Elastic moduli of own points relative to those of their materials; empty if all are 1.
+    pub(super) stiffness: Vec<f64>,
+    /// Yield stresses of own points relative to those of their materials, if they vary within a material.
+    pub(super) yields: Option<YieldFactor>,
     /// Reverse entries, for materials with values of bonds.
     pub(super) opposite: Opposites,
     pub(super) set: InstructionSet,
@@ -60,7 +64,8 @@ saved! {
     impl<S: Solid<D>, const D: usize> Checkpointed for SolidForce<S, D> {
         bonds, history: part,
         dropped: by(Laid::new("operator/dropped", Layout::Count)),
-        cloud, materials, weakest, undamaged, history_size, work, expansion, opposite, set: fixed,
+        cloud, materials, weakest, undamaged, history_size, work, expansion, stiffness, yields, opposite,
+        set: fixed,
         shapes: rebuilt,
         inverted: set(None),
         displaced, states, planes: scratch,
@@ -107,17 +112,20 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             false => Opposites::default(),
         };
         let places = opposite.places();
+        let history = History::new(bonds.list(), history_size, materials.criteria().vary());
         let mut force = Self {
             weakest,
             materials,
             work,
             shapes: Vec::new(),
             undamaged: Vec::new(),
-            history: History::new(bonds.list(), history_size),
+            history,
             history_size,
             dropped: 0,
             inverted: None,
             expansion: None,
+            stiffness: Vec::new(),
+            yields: None,
             opposite,
             set: InstructionSet::detect(),
             displaced: Pool::new(1, move || vec![Row::default(); site_count]),
@@ -211,6 +219,7 @@ impl<S: Solid<D>, const D: usize> SolidForce<S, D> {
             per_bond: self.history_size.per_bond,
             dt: self.history.since(i, t),
             thermal: heat.stretch(i),
+            yields: heat.yield_scale(i, self.stiffness_of(i)),
         })
     }
 

@@ -72,7 +72,7 @@ pub(super) struct History {
     pub points: Vec<f64>,
     /// Numbers of bonds, by groups of eight: eight numbers for each of [`HistorySize::per_bond`].
     pub bonds: Vec<f64>,
-    /// Time to which the numbers of each point belong, s; empty if nothing is stored.
+    /// Time to which the numbers of each point belong, s; empty if nothing is stored and no criterion depends on it.
     pub time: Vec<f64>,
     start: Vec<usize>,
 }
@@ -98,13 +98,14 @@ pub(super) struct BlockHistory<'a> {
 }
 
 impl History {
-    pub fn new(list: &BondList, size: HistorySize) -> Self {
+    /// Creates the numbers of the bonds of a list; `times`: whether the time of the last step is stored in any case.
+    pub fn new(list: &BondList, size: HistorySize, times: bool) -> Self {
         let n = list.len();
         Self {
             size,
             points: vec![0.0; n * size.per_point],
             bonds: vec![0.0; list.present().len() * LANES * size.per_bond],
-            time: vec![0.0; if size.is_empty() { 0 } else { n }],
+            time: vec![0.0; if size.is_empty() && !times { 0 } else { n }],
             start: list.start().to_vec(),
         }
     }

@@ -66,6 +66,12 @@ fn state_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
                 material.state_change::<T>(&at, &direction, &mut out);
             }
         }
+        if !force.stiffness.is_empty() {
+            let factor = force.stiffness_of(i);
+            for value in out.values.iter_mut().chain(&mut *out.of_bonds) {
+                *value *= factor;
+            }
+        }
     }
 }
 
@@ -267,6 +273,7 @@ fn advance_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
             per_bond: size.per_bond,
             dt,
             thermal: first_loop.heat.stretch(i),
+            yields: first_loop.heat.yield_scale(i, force.stiffness_of(i)),
         };
         let mut next = NextHistory {
             history: &mut block.points[points],
@@ -275,7 +282,7 @@ fn advance_rows_body<T: Lanes, S: Solid<D>, const D: usize>(
         };
         let work = force.material(i).advance::<T>(&at, &mut next);
         if !starts {
-            block.works[place] = work * force.cloud.volumes()[i];
+            block.works[place] = force.stiffness_of(i) * work * force.cloud.volumes()[i];
         }
     }
 }

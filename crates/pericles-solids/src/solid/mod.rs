@@ -39,6 +39,7 @@ use pericles::operator::Kinematics;
 pub use body::SolidBody;
 pub use family::{Bond, Family, Point};
 pub use force::SolidForce;
+pub use heat::YieldScale;
 pub use history::{HistorySize, NextHistory};
 pub use shape::LARGEST_CONDITION;
 pub(crate) use shape::{ShapeTensor, inverse_of};

@@ -3,10 +3,11 @@
 use pericles::domain::Field;
 use pericles::operator::{
     Breakable, Capabilities, DilatationView, Force, InstructionSet, Inversion, LocalForce,
-    PointSubset, StressView,
+    LostYield, PointSubset, StressView,
 };
 use pericles::parallel::for_each_chunk_of;
-use pericles::{Expandable, Result, StepEnd, ThermalExpansion};
+use pericles::space::check_length;
+use pericles::{Expandable, Pointwise, Result, StepEnd, ThermalExpansion, YieldFactor, positive};
 
 use super::{Solid, SolidForce};
 
@@ -49,7 +50,7 @@ impl<S: Solid<D>, const D: usize> Force for SolidForce<S, D> {
 
     fn add_energy_density(&self, t: f64, u: &[f64], out: &mut [f64]) {
         let ghosts = self.cloud.domain().ghosts(u);
-        let (heat, rows) = (self.heat_at(t), self.packed(Field::new(u, &ghosts)));
+        let (heat, rows) = (self.heat_of_energy(t), self.packed(Field::new(u, &ghosts)));
         let cost = self.bonds.list().cost(&PointSubset::All);
         for_each_chunk_of(out, cost, &|first, out| {
             for (i, energy) in (first..).zip(out) {
@@ -71,7 +72,8 @@ impl<S: Solid<D>, const D: usize> Force for SolidForce<S, D> {
     fn frequency_bound(&self, density: &dyn Fn(usize) -> f64) -> f64 {
         let stiffness = |i: usize| {
             let shape = self.shapes[i].as_ref();
-            shape.map_or(0.0, |shape| self.material(i).stiffness(shape))
+            let stiffness = shape.map_or(0.0, |shape| self.material(i).stiffness(shape));
+            self.stiffness_of(i) * stiffness
         };
         let springs: Vec<f64> = (0..self.cloud.len()).map(stiffness).collect();
         let springs = self.bonds.list().sites().spread(&springs);
@@ -105,7 +107,7 @@ impl<S: Solid<D>, const D: usize> Force for SolidForce<S, D> {
         if self.can_lose_bonds() {
             self.break_bonds(step, u, &on);
         }
-        if !self.material_history().is_empty() {
+        if !self.material_history().is_empty() || self.materials.criteria().vary() {
             self.advance(step, u, &on);
         }
         self.inverted = self.add_forces(step.t, u, &on, out);
@@ -134,6 +136,15 @@ impl<S: Solid<D>, const D: usize> Force for SolidForce<S, D> {
 
     fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
         Some(self)
+    }
+
+    fn pointwise_mut(&mut self) -> Option<&mut dyn Pointwise> {
+        Some(self)
+    }
+
+    fn lost_yield(&self) -> Option<LostYield> {
+        let (point, ratio) = self.yields.as_ref()?.lost()?;
+        Some(LostYield { point, ratio })
     }
 
     fn inversion(&self) -> Option<Inversion> {
@@ -197,6 +208,31 @@ impl<S: Solid<D>, const D: usize> DilatationView for SolidForce<S, D> {
 impl<S: Solid<D>, const D: usize> Expandable for SolidForce<S, D> {
     fn expand(&mut self, expansion: ThermalExpansion) -> Result<()> {
         self.expansion = Some(expansion);
+        Ok(())
+    }
+}
+
+impl<S: Solid<D>, const D: usize> Pointwise for SolidForce<S, D> {
+    fn set_stiffness(&mut self, factors: Vec<f64>) -> Result<()> {
+        check_length(
+            "the factors of the stiffness",
+            factors.len(),
+            self.cloud.len(),
+        )?;
+        for factor in &factors {
+            positive("the factor of the stiffness of a point", *factor)?;
+        }
+        self.stiffness = factors;
+        Ok(())
+    }
+
+    fn set_yield(&mut self, factor: YieldFactor) -> Result<()> {
+        check_length(
+            "the factors of the yield stress",
+            factor.points(),
+            self.cloud.len(),
+        )?;
+        self.yields = Some(factor);
         Ok(())
     }
 }

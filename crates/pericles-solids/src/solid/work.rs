@@ -43,7 +43,7 @@ impl<S: Solid<D>, const D: usize> WorkLoop<'_, S, D> {
     fn thermal<T: Lanes>(&self, family: &Family<'_, D>, batch: usize) -> T {
         let sites = self.second.force.bonds.list().sites();
         let mut stretches = [0.0; LANES];
-        if self.heat.0.is_some() {
+        if self.heat.stretches.is_some() {
             let here = self.heat.stretch(sites.point(family.site()));
             for (stretch, site) in stretches.iter_mut().zip(family.others(batch)) {
                 *stretch = 0.5 * (here + self.heat.stretch(sites.point(site)));

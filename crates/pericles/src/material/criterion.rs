@@ -23,6 +23,19 @@ pub struct BondState {
     pub direction: [f64; 3],
     /// Stretch relative to the stress-free length.
     pub stretch: f64,
+    /// Position and time.
+    pub at: BondPlace,
+}
+
+/// Position, time and temperature of a bond, for criteria that depend on them.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BondPlace {
+    /// Centre of the undeformed bond, m.
+    pub place: [f64; 3],
+    /// Time, s.
+    pub t: f64,
+    /// Mean temperature of both end points, K; zero for a body without temperatures.
+    pub temperature: f64,
 }
 
 impl BondState {
@@ -32,6 +45,7 @@ impl BondState {
         tensor: impl Fn(usize, usize) -> f64,
         [i, j]: [usize; 2],
         [xi, eta]: [[f64; D]; 2],
+        at: BondPlace,
     ) -> Self {
         let mean = |slot: usize| 0.5 * (tensor(slot, i) + tensor(slot, j));
         let (mut stress, mut strain) = ([[0.0; 3]; 3], [[0.0; 3]; 3]);
@@ -55,6 +69,7 @@ impl BondState {
             strain,
             direction: direction.map(|x| x / length),
             stretch: length / square.sqrt() - 1.0,
+            at,
         }
     }
 
@@ -128,6 +143,12 @@ pub trait BondCriterion: fmt::Debug + Send + Sync {
     /// direction; NaN means that the bond does not break.
     fn failure_index(&self, bond: &BondState) -> f64;
 
+    /// Returns whether the index also depends on [`BondState::at`], which is known in
+    /// bodies of state-based and correspondence materials on a neighbour list only.
+    fn varies(&self) -> bool {
+        false
+    }
+
     /// Returns the criterion in words that complete "bonds break", for reports.
     fn words(&self) -> String;
 }
@@ -176,6 +197,11 @@ impl Criterion {
         self.0.failure_index(bond)
     }
 
+    /// Returns whether the index also depends on position, time or temperature.
+    pub fn varies(&self) -> bool {
+        self.0.varies()
+    }
+
     /// Returns the criterion in words that complete "bonds break".
     pub fn words(&self) -> String {
         self.0.words()
@@ -222,6 +248,12 @@ impl PairCriteria {
         }
     }
 
+    /// Returns whether a criterion depends on position, time or temperature.
+    pub fn vary(&self) -> bool {
+        let mut all = self.of_pair.iter().flatten().flatten();
+        all.any(Criterion::varies)
+    }
+
     /// Returns whether no bond breaks by a criterion.
     pub fn is_empty(&self) -> bool {
         self.of_pair.iter().flatten().all(Option::is_none)
@@ -254,6 +286,7 @@ mod tests {
             strain: [[0.0; 3]; 3],
             direction,
             stretch: 0.0,
+            at: BondPlace::default(),
         }
     }
 

@@ -44,7 +44,9 @@ pub use bond_material::{BondMaterial, Calibration, Fracture, FractureCalibration
 pub use composite::{InterfaceRule, MaterialPairs, check_materials};
 pub use constants::BondConstants;
 pub use crack_planes::{CrackPlane, LayerMoments};
-pub use criterion::{BondCriterion, BondState, Criterion, PairCriteria, PrincipalStress};
+pub use criterion::{
+    BondCriterion, BondPlace, BondState, Criterion, PairCriteria, PrincipalStress,
+};
 pub use interface::{InterfaceStiffness, MaterialInterface};
 pub use law::{BondStretch, CubicLaw, LinearBond, PairLaw};
 pub use modulus::{ElasticModulus, StressState};

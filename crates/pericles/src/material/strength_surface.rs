@@ -1,6 +1,6 @@
 //! The strength of a brittle material as an input beside its fracture energy.
 
-use super::criterion::{BondState, Criterion};
+use super::criterion::{BondPlace, BondState, Criterion};
 use crate::error::{Result, positive};
 use crate::units::quantity;
 
@@ -50,6 +50,7 @@ impl StrengthSurface {
             strain: [[0.0; 3]; 3],
             direction: [1.0, 0.0, 0.0],
             stretch: 0.0,
+            at: BondPlace::default(),
         };
         match self {
             Self::Rankine(strength) => point.principal_stresses()[0] >= *strength,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::{
     BondAt, BondValues, BondView, Breakable, Capabilities, CoarseBreak, Force, InstructionSet,
-    Inversion, LinearOperator, Linearity, LocalForce, PointSubset, SplitForce,
+    Inversion, LinearOperator, Linearity, LocalForce, LostYield, PointSubset, SplitForce,
 };
 use crate::archive::{Archive, Checkpointed};
 use crate::domain::Field;
@@ -204,6 +204,10 @@ impl Force for Forces {
 
     fn inversion(&self) -> Option<Inversion> {
         self.iter().find_map(|force| force.inversion())
+    }
+
+    fn lost_yield(&self) -> Option<LostYield> {
+        self.iter().find_map(|force| force.lost_yield())
     }
 
     fn directed_bonds(&self) -> u64 {

@@ -82,7 +82,7 @@ pub use crate::parallel::PointSubset;
 use self::heating::heating_of;
 use crate::archive::Checkpointed;
 use crate::step_end::StepEnd;
-use crate::thermal::Expandable;
+use crate::thermal::{Expandable, Pointwise};
 
 /// The internal force density on the points of a body as a function of their displacements.
 ///
@@ -147,6 +147,11 @@ pub trait Force: Checkpointed + Send + Sync {
         None
     }
 
+    /// Returns the material for setting factors of the stiffness and the yield stress of points, if the force supports them.
+    fn pointwise_mut(&mut self) -> Option<&mut dyn Pointwise> {
+        None
+    }
+
     /// Returns the work of changing temperatures within a step, J: the change of the energy at fixed
     /// displacements, averaged over both ends of the step.
     ///
@@ -173,6 +178,11 @@ pub trait Force: Checkpointed + Send + Sync {
     /// Returns a point with a non-positive volume ratio at the end of the last step, if the material requires
     /// a positive one.
     fn inversion(&self) -> Option<Inversion> {
+        None
+    }
+
+    /// Returns a point of this process whose yield stress was not positive at its temperature at the end of the last step.
+    fn lost_yield(&self) -> Option<LostYield> {
         None
     }
 
@@ -212,6 +222,15 @@ pub struct Inversion {
     pub point: usize,
     /// J = det F of the deformation gradient F, zero or negative.
     pub volume_ratio: f64,
+}
+
+/// A point whose yield stress is not positive, which stops the run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LostYield {
+    /// The point.
+    pub point: usize,
+    /// Yield stress relative to that of the material.
+    pub ratio: f64,
 }
 
 /// A force density linear in the displacement.

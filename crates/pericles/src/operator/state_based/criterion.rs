@@ -16,7 +16,7 @@ use super::kinematics::Kinematics;
 use super::view::force_of_bond;
 use crate::domain::Field;
 use crate::lanes::LANES;
-use crate::material::{BondState, PairForce};
+use crate::material::{BondPlace, BondState, PairForce};
 use crate::operator::PointSubset;
 use crate::operator::records::Records;
 use crate::parallel::BLOCK;
@@ -141,7 +141,7 @@ impl<L: Kinematics, const D: usize> LinearSolidForce<L, D> {
                 xi = xi.map(|x| (1.0 + thermal) * x);
             }
             let tensor = |slot: usize, point: usize| tensors.entry(2 * D * D, slot, point);
-            BondState::between::<D>(tensor, [i, j], [xi, eta])
+            BondState::between::<D>(tensor, [i, j], [xi, eta], BondPlace::default())
         })
     }
 
