@@ -19,8 +19,10 @@ density = "2700 kg/m3"
 youngs_modulus = "70 GPa"
 horizon_ratio = 3
 model = "linear"
+[sets]
+pulled = { where = "x > 0.097" }
 [[load]]
-layer = { side = "right", depth = "2 mm" }
+set = "pulled"
 traction = ["1 MPa"]
 [[probe]]
 name = "end"
@@ -181,7 +183,11 @@ fn invalid_fits_are_rejected_before_anything_is_run() {
             3,
             "do not contain its value in the deck",
         ),
-        ("--keys material.youngs_modulus=1:90mm", 3, "\"90mm\""),
+        (
+            "--keys material.youngs_modulus=1:90mm",
+            3,
+            "`90mm` is not a modulus",
+        ),
         (
             "--keys material.youngs_modulus=1",
             2,

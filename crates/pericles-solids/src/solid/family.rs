@@ -245,6 +245,7 @@ impl<'a, const D: usize> Family<'a, D> {
     }
 
     /// The same bonds at another displacement.
+    #[inline(always)]
     pub(super) fn at(self, u: &'a [Row]) -> Self {
         assert!(u.len() == self.u.len(), "a displacement for every site");
         Self { u, ..self }
