@@ -174,9 +174,9 @@ fn invalid_fits_are_rejected_before_anything_is_run() {
     let place = with_measured("--set material.youngs_modulus=60GPa");
     for (arguments, status, says) in [
         (
-            "--keys material.youngs_moduls",
+            "--keys material.modulus_of_young",
             3,
-            "material.youngs_moduls has no number",
+            "material.modulus_of_young has no number",
         ),
         (
             "--keys material.youngs_modulus=80GPa:90GPa",
