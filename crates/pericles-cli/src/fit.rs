@@ -1,8 +1,8 @@
 //! `fit`: keys of a deck fitted to a measured curve.
 
 use pericles_run::fit::{Fit, FitEnd, FitEvent, Plan, Question};
-use pericles_run::sweep::{Settings, SweepEvent};
-use pericles_run::{Deadline, DeckText, RunError};
+use pericles_run::sweep::SweepEvent;
+use pericles_run::{DeckText, RunError};
 
 use crate::args::{FitArgs, ResumeArgs, RunOptions};
 use crate::console;
@@ -49,11 +49,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
 /// # Errors
 /// A run fails, or output cannot be written.
 fn drive(fit: &Fit, options: &RunOptions) -> Result<Exit, CliError> {
-    let settings = Settings {
-        threads: options.execution.threads.count_or(1),
-        means: options.means(),
-        deadline: Deadline::from_now(options.limits.wall_time),
-    };
+    let settings = options.of_several();
     let quiet = options.execution.quiet;
     let signals = Signals::watch().map_err(CliError::Signals)?;
     let show = |event: FitEvent<'_>| match event {

@@ -2,7 +2,7 @@
 
 use pericles_run::sweep::{Plan, Settings, Sweep, SweepEvent};
 use pericles_run::units::threads;
-use pericles_run::{Deadline, DeckText, Ending, RunError};
+use pericles_run::{DeckText, Ending, RunError};
 
 use crate::args::{ResumeArgs, RunArgs, RunOptions};
 use crate::console;
@@ -42,11 +42,7 @@ pub(crate) fn resume(args: &ResumeArgs) -> Result<Exit, CliError> {
 /// # Errors
 /// Output cannot be written.
 pub(crate) fn drive(sweep: &Sweep, options: &RunOptions) -> Result<Exit, CliError> {
-    let settings = Settings {
-        threads: options.execution.threads.count_or(1),
-        means: options.means(),
-        deadline: Deadline::from_now(options.limits.wall_time),
-    };
+    let settings = options.of_several();
     let quiet = options.execution.quiet;
     let signals = Signals::watch().map_err(CliError::Signals)?;
     let show = |event: SweepEvent<'_>| show(&event, &settings, &signals, quiet);

@@ -6,7 +6,8 @@ use std::time::Duration;
 
 use clap::Args;
 use pericles_run::sequence::last_step;
-use pericles_run::{self as library, Means, Origin, RunError, machine};
+use pericles_run::sweep::Settings;
+use pericles_run::{self as library, Deadline, Means, Origin, RunError, machine};
 
 use super::values::{threads, wall_time};
 
@@ -58,6 +59,15 @@ pub(crate) struct RunOptions {
 }
 
 impl RunOptions {
+    /// Returns the settings of several runs, by default on one thread each.
+    pub(crate) fn of_several(&self) -> Settings {
+        Settings {
+            threads: self.execution.threads.count_or(1),
+            means: self.means(),
+            deadline: Deadline::from_now(self.limits.wall_time),
+        }
+    }
+
     /// Returns the cache and memory limit for building a model.
     pub(crate) fn means(&self) -> Means {
         Means {

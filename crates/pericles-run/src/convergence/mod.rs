@@ -8,13 +8,13 @@
 mod family;
 mod order;
 
-use std::io::Write;
 use std::path::Path;
 
-use pericles_io::{Axis, Curve, LineChart, csv_row, write_atomically};
+use pericles_io::{Axis, Curve, LineChart};
 
 use self::family::{Family, Point, families};
 use crate::error::RunError;
+use crate::json::write_rows;
 use crate::scalar::Scalar;
 use crate::sweep::SweepResults;
 use crate::units::{quantity, significant};
@@ -131,10 +131,7 @@ impl Convergence {
             row.push(order.map_or(String::new(), |order| format!("{order:?}")));
             table.push(row);
         }
-        Ok(write_atomically(path, |file| {
-            let mut rows = table.iter();
-            rows.try_for_each(|row| file.write_all(csv_row(row).as_bytes()))
-        })?)
+        write_rows(path, &table)
     }
 
     /// Returns a chart of the error on logarithmic axes or, without a reference, of the scalar.

@@ -99,7 +99,7 @@ impl<E> Search<'_, '_, E> {
         let mut growth = 2.0;
         // A step and the derivatives at its end need one evaluation and one per parameter.
         while !converged && self.evaluations + 1 + count <= self.control.most {
-            let (normal, gradient) = self.normal_equations(&jacobian, &residuals);
+            let (normal, gradient) = normal_equations(self.ranges, &jacobian, &residuals);
             let largest = (0..count).map(|j| normal[j][j]).fold(0.0, f64::max);
             let free: Vec<usize> = (0..count)
                 .filter(|&j| normal[j][j] > 0.0 && !self.is_held(j, values[j], gradient[j]))
@@ -175,33 +175,33 @@ impl<E> Search<'_, '_, E> {
         Ok((0..residuals.len()).map(row).collect())
     }
 
-    /// Returns JᵀJ and Jᵀr for parameters in units of their scales.
-    fn normal_equations(
-        &self,
-        jacobian: &[Vec<f64>],
-        residuals: &[f64],
-    ) -> (Vec<Vec<f64>>, Vec<f64>) {
-        let count = self.ranges.len();
-        let scaled = |i: usize, j: usize| jacobian[i][j] * self.ranges[j].scale;
-        let sum = |j: usize, k: usize| {
-            (0..residuals.len())
-                .map(|i| scaled(i, j) * scaled(i, k))
-                .sum()
-        };
-        let normal = (0..count).map(|j| (0..count).map(|k| sum(j, k)).collect());
-        let slope = |j: usize| {
-            (0..residuals.len())
-                .map(|i| scaled(i, j) * residuals[i])
-                .sum()
-        };
-        (normal.collect(), (0..count).map(slope).collect())
-    }
-
     /// Returns whether a parameter is at a bound beyond which the sum decreases.
     fn is_held(&self, j: usize, value: f64, slope: f64) -> bool {
         let range = &self.ranges[j];
         (value <= range.low && slope > 0.0) || (value >= range.high && slope < 0.0)
     }
+}
+
+/// Returns JᵀJ and Jᵀr for parameters in units of their scales.
+fn normal_equations(
+    ranges: &[Range],
+    jacobian: &[Vec<f64>],
+    residuals: &[f64],
+) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let count = ranges.len();
+    let scaled = |i: usize, j: usize| jacobian[i][j] * ranges[j].scale;
+    let sum = |j: usize, k: usize| {
+        (0..residuals.len())
+            .map(|i| scaled(i, j) * scaled(i, k))
+            .sum()
+    };
+    let normal = (0..count).map(|j| (0..count).map(|k| sum(j, k)).collect());
+    let slope = |j: usize| {
+        (0..residuals.len())
+            .map(|i| scaled(i, j) * residuals[i])
+            .sum()
+    };
+    (normal.collect(), (0..count).map(slope).collect())
 }
 
 /// Returns ½ Σ r².
@@ -254,11 +254,7 @@ pub(super) fn standard_errors(minimum: &Minimum, ranges: &[Range]) -> Vec<f64> {
         return vec![f64::NAN; count];
     }
     let variance = 2.0 * half_square(&minimum.residuals) / (rows - count) as f64;
-    let scaled = |i: usize, j: usize| minimum.jacobian[i][j] * ranges[j].scale;
-    let sum = |j: usize, k: usize| (0..rows).map(|i| scaled(i, j) * scaled(i, k)).sum::<f64>();
-    let normal: Vec<Vec<f64>> = (0..count)
-        .map(|j| (0..count).map(|k| sum(j, k)).collect())
-        .collect();
+    let (normal, _) = normal_equations(ranges, &minimum.jacobian, &minimum.residuals);
     let error = |j: usize| {
         let unit = (0..count).map(|k| if j == k { 1.0 } else { 0.0 }).collect();
         let inverse = solved(normal.clone(), unit)[j];

@@ -22,7 +22,7 @@ mod student;
 
 use std::path::{Path, PathBuf};
 
-use pericles_io::{IoError, OutputFolder};
+use pericles_io::OutputFolder;
 use serde::{Deserialize, Serialize};
 
 use self::curve::{Measured, Sampled};
@@ -34,7 +34,7 @@ use crate::cancel::Cancel;
 use crate::columns::Tables;
 use crate::deck_text::DeckText;
 use crate::error::RunError;
-use crate::json::write_json;
+use crate::json::{read_json, write_json};
 use crate::results::Results;
 use crate::run::Ending;
 use crate::sweep::{Member, Settings, SweepEvent, run_all, worst};
@@ -173,13 +173,7 @@ impl Fit {
     /// The folder does not contain a fit.
     pub fn open(path: &Path) -> Result<Self, RunError> {
         let folder = OutputFolder::open(path)?;
-        let file = folder.file(RECORD);
-        let text =
-            std::fs::read_to_string(&file).map_err(|error| IoError::reading(&file, error))?;
-        let record = serde_json::from_str(&text).map_err(|error| RunError::Damaged {
-            path: file,
-            reason: error.to_string(),
-        })?;
+        let record = read_json(&folder.file(RECORD))?;
         Ok(Self { record, folder })
     }
 

@@ -1,16 +1,16 @@
 //! The fitted values with their errors, as table, lines and picture.
 
-use std::io::Write;
 use std::path::Path;
 
 use pericles_deck::unit_of_key;
-use pericles_io::{Axis, Curve, LineChart, csv_row, write_atomically};
+use pericles_io::{Axis, Curve, LineChart};
 
 use super::curve::Measured;
 use super::least_squares::{Minimum, Range, standard_errors};
 use super::student::two_sided_95;
 use super::{Evaluation, Record};
 use crate::error::RunError;
+use crate::json::write_rows;
 use crate::units::{percent, quantity};
 
 /// The result of a fit.
@@ -192,25 +192,22 @@ impl Outcome {
             let words = [value.key.clone(), unit_of_key(&value.key).to_owned()];
             words.into_iter().chain(numbers.map(number)).collect()
         };
-        let rows = self.values.iter().map(row);
-        write_rows(
-            &folder.join("fit.csv"),
-            header.map(String::from).to_vec(),
-            rows,
-        )?;
+        let mut table: Vec<Vec<String>> = vec![header.map(String::from).into()];
+        table.extend(self.values.iter().map(row));
+        write_rows(&folder.join("fit.csv"), &table)?;
         let [x_name, y_name] = self.titles();
-        let header = vec![
+        let mut table = vec![vec![
             x_name,
             format!("measured {y_name}"),
             format!("start {y_name}"),
             format!("fitted {y_name}"),
-        ];
+        ]];
         let [start, fitted] = &self.curves;
-        let rows = (0..self.measured.x.len()).map(|k| {
+        table.extend((0..self.measured.x.len()).map(|k| {
             let numbers = [self.measured.x[k], self.measured.y[k], start[k], fitted[k]];
             numbers.map(number).to_vec()
-        });
-        write_rows(&folder.join("curve.csv"), header, rows)?;
+        }));
+        write_rows(&folder.join("curve.csv"), &table)?;
         Ok(self.chart().write(folder.join("fit.png"))?)
     }
 
@@ -234,16 +231,4 @@ impl Outcome {
             .curve(Curve::line("deck as given", x, start).dashed())
             .curve(Curve::line("fitted", x, fitted))
     }
-}
-
-fn write_rows(
-    path: &Path,
-    header: Vec<String>,
-    rows: impl Iterator<Item = Vec<String>>,
-) -> Result<(), RunError> {
-    let table: Vec<Vec<String>> = std::iter::once(header).chain(rows).collect();
-    Ok(write_atomically(path, |file| {
-        let mut rows = table.iter();
-        rows.try_for_each(|row| file.write_all(csv_row(row).as_bytes()))
-    })?)
 }

@@ -2,10 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use pericles_io::IoError;
-
 use super::record::{Member, Record};
 use crate::error::RunError;
+use crate::json::read_json;
 use crate::results::Results;
 
 /// The record of a sweep in its folder.
@@ -29,13 +28,7 @@ impl SweepResults {
     /// # Errors
     /// The folder does not contain a sweep.
     pub fn open(folder: &Path) -> Result<Self, RunError> {
-        let path = folder.join(RECORD);
-        let text =
-            std::fs::read_to_string(&path).map_err(|error| IoError::reading(&path, error))?;
-        let record: Record = serde_json::from_str(&text).map_err(|error| RunError::Damaged {
-            path,
-            reason: error.to_string(),
-        })?;
+        let record: Record = read_json(&folder.join(RECORD))?;
         Ok(Self::of(record, folder))
     }
 

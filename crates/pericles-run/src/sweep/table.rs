@@ -1,12 +1,12 @@
 //! The table of a sweep: a row per run.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use pericles_io::{csv_row, read_csv, write_atomically};
+use pericles_io::read_csv;
 
 use super::results::SweepResults;
 use crate::error::RunError;
+use crate::json::write_rows;
 use crate::results::Results;
 use crate::units::significant;
 
@@ -93,10 +93,7 @@ impl Table {
     /// # Errors
     /// The table cannot be written.
     pub(super) fn write(&self) -> Result<(), RunError> {
-        Ok(write_atomically(&self.path, |file| {
-            let mut rows = self.rows.iter();
-            rows.try_for_each(|row| file.write_all(csv_row(row).as_bytes()))
-        })?)
+        write_rows(&self.path, &self.rows)
     }
 
     /// Returns the header, then a row per run.
