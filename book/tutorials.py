@@ -61,7 +61,7 @@ def figure(source, name):
 def peak_stress(folder):
     """Largest nominal stress, MPa, of a plate of 40 mm width."""
     with open(folder / "force_displacement.csv") as table:
-        return max(float(row["top_force_y [N]"]) for row in csv.DictReader(table)) / 0.04 / 1e6
+        return max(float(row["top_force_y [N/m]"]) for row in csv.DictReader(table)) / 0.04 / 1e6
 
 
 def axes(plot, x, y):

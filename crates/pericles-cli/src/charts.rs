@@ -3,14 +3,41 @@
 use std::path::Path;
 
 use pericles_io::observers::profile_chart;
-use pericles_io::{Axis, Curve, IoError, LineChart, read_csv};
+use pericles_io::{Axis, CsvData, Curve, IoError, LineChart, read_csv};
 
-use pericles_run::TimeAxis;
+use pericles_run::{Results, TimeAxis};
 
 /// Most curves per chart: more are not distinguishable.
 const MOST_CURVES: usize = 8;
 /// Most points per curve: more than the width of a chart in pixels are not visible.
 const MOST_POINTS: usize = 4000;
+
+/// Momenta below this share of √(2 · kinetic energy · mass) are round-off.
+const ROUND_OFF: f64 = 1e-9;
+
+/// Scales of the charts of a run.
+pub(crate) struct Scales {
+    along: TimeAxis,
+    /// Mass of the body, kg; zero if unknown.
+    mass: f64,
+}
+
+impl Scales {
+    /// Returns the scales of a run.
+    pub(crate) fn of(results: &Results) -> Self {
+        Self {
+            along: TimeAxis::of(results),
+            mass: results.number("/model/mass").unwrap_or_default(),
+        }
+    }
+
+    /// Returns the momentum (kg m/s) below which the momenta of a history are round-off.
+    fn smallest_momentum(&self, history: &CsvData) -> f64 {
+        let energies = history.column("kinetic_energy").unwrap_or_default();
+        let largest = energies.iter().copied().fold(0.0, f64::max);
+        ROUND_OFF * (2.0 * largest * self.mass).sqrt()
+    }
+}
 
 /// Curves of one unit over time.
 pub(crate) struct Chart {
@@ -42,25 +69,30 @@ impl Chart {
     }
 }
 
-/// Returns charts of the selected columns of a table over its column `time`, with the time axis of the run. A table
-/// without this column or with fewer than two rows has no charts. Constant columns and step numbers are omitted.
+/// Returns charts of the selected columns of a table over its column `time`, with the scales of the run. A table without this
+/// column or with fewer than two rows has no charts. Constant columns, momenta that are round-off and step numbers are
+/// omitted.
 ///
 /// # Errors
 /// The table cannot be read.
 pub(crate) fn of_table(
     path: &Path,
-    along: TimeAxis,
+    scales: &Scales,
     mut wanted: impl FnMut(&str) -> bool,
 ) -> Result<Vec<Chart>, IoError> {
     let table = read_csv(path)?;
     let Some(time) = table.column("time").filter(|time| time.len() > 1) else {
         return Ok(Vec::new());
     };
+    let smallest = scales.smallest_momentum(&table);
     let stride = time.len().div_ceil(MOST_POINTS);
     let mut charts: Vec<Chart> = Vec::new();
     for (column, values) in table.columns.iter().zip(&table.values) {
         let changes = values.iter().any(|x| *x != values[0] && !x.is_nan());
-        if ["step", "time"].contains(&column.name()) || !wanted(column.name()) || !changes {
+        let is_momentum = column.name().starts_with("momentum_");
+        let is_round_off = is_momentum && values.iter().all(|p| p.abs() < smallest);
+        let is_left = is_round_off || !changes || ["step", "time"].contains(&column.name());
+        if !wanted(column.name()) || is_left {
             continue;
         }
         let curve = (column.name().to_owned(), thinned(values, stride));
@@ -74,8 +106,8 @@ pub(crate) fn of_table(
             None => charts.push(Chart {
                 name: String::new(),
                 unit: column.unit().to_owned(),
-                along,
-                time: along.scaled(&thinned(time, stride)),
+                along: scales.along,
+                time: scales.along.scaled(&thinned(time, stride)),
                 curves: vec![curve],
             }),
         }
@@ -130,8 +162,8 @@ fn common_words(names: &[&str], unit: &str) -> String {
     let beginning = shared(&|words, count| words.starts_with(&first[..count]));
     match (ending, beginning) {
         (0, 0) => match unit {
-            "J" => "energy".into(),
-            "N" => "force".into(),
+            "J" | "J/m" | "J/m2" => "energy".into(),
+            "N" | "N/m" | "N/m2" => "force".into(),
             "m" => "length".into(),
             "m/s" => "velocity".into(),
             _ => "value".into(),
@@ -158,15 +190,25 @@ mod tests {
 
     #[test]
     fn columns_are_grouped_by_unit_and_constant_columns_are_omitted() {
+        let scales = Scales {
+            along: TimeAxis::TIME,
+            mass: 1.0,
+        };
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("a.csv");
         let text = "step,time [s],a [J],b [J],c [N],still [N],ratio,count\n0,0,1,2,3,7,0,0\n1,1,2,3,4,7,0.5,9\n";
         std::fs::write(&path, text).unwrap();
-        let names: Vec<String> = of_table(&path, TimeAxis::TIME, |_| true)
+        let names: Vec<String> = of_table(&path, &scales, |_| true)
             .unwrap()
             .into_iter()
             .map(|chart| chart.name)
             .collect();
         assert_eq!(names, ["energy", "c", "ratio", "count"]);
+
+        let text = "time [s],kinetic_energy [J],momentum_x [kg m/s],momentum_y [kg m/s]\n0,0,0,0\n1,2,1e-3,2e-15\n";
+        std::fs::write(&path, text).unwrap();
+        let charts = of_table(&path, &scales, |_| true).unwrap();
+        assert_eq!(charts[1].curves.len(), 1);
+        assert_eq!(charts[1].name, "momentum x");
     }
 }

@@ -220,7 +220,7 @@ fn audit(results: &Results) -> Option<(&'static str, String)> {
     results.value("/audit").filter(|audit| audit.is_object())?;
     let energy = |name| {
         let value = results.number(&format!("/audit/{name}"));
-        quantity(value.unwrap_or(f64::NAN), "J")
+        quantity(value.unwrap_or(f64::NAN), &results.unit_of(name))
     };
     Some((
         "energy",

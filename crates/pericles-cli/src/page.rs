@@ -12,13 +12,12 @@ use pericles_run::{Results, file_name};
 use serde_json::Value;
 
 use crate::args::ReportArgs;
-use crate::charts;
+use crate::charts::{Scales, of_table};
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::info;
 use crate::plot;
-use pericles_run::TimeAxis;
 
 /// Most pictures per field; of more, evenly spaced ones are shown.
 const MOST_PICTURES: usize = 6;
@@ -74,14 +73,14 @@ fn of_run(results: &Results) -> Result<String, CliError> {
     page.histories(results)?;
     if results.value("/audit").is_some_and(Value::is_object) {
         page.heading("Energy balance");
-        page.values(results.value("/audit"));
+        page.values(results.value("/audit"), results);
     }
     page.heading("Model");
-    page.values(results.value("/model"));
+    page.values(results.value("/model"), results);
     page.source(results);
     page.heading("Machine");
-    page.values(results.value("/program"));
-    page.values(results.value("/progress"));
+    page.values(results.value("/program"), results);
+    page.values(results.value("/progress"), results);
     Ok(page.finished(&title))
 }
 
@@ -177,7 +176,7 @@ impl Page {
     fn source(&mut self, results: &Results) {
         if let Some(model) = results.value("/model_data/model") {
             self.heading("Model data");
-            self.values(Some(model));
+            self.values(Some(model), results);
             return;
         }
         self.heading("Deck");
@@ -327,7 +326,7 @@ impl Page {
         let mut is_first = true;
         for table in results.tables() {
             let file = file_name(&table);
-            for chart in charts::of_table(&table, TimeAxis::of(results), |_| true)? {
+            for chart in of_table(&table, &Scales::of(results), |_| true)? {
                 if std::mem::take(&mut is_first) {
                     self.heading("Time histories");
                 }
@@ -339,9 +338,10 @@ impl Page {
     }
 
     /// Adds a table of the values of an object, rounded and with units; keys of nested objects follow a comma.
-    fn values(&mut self, object: Option<&Value>) {
+    fn values(&mut self, object: Option<&Value>, results: &Results) {
         let mut rows = Vec::new();
-        collect(object.unwrap_or(&Value::Null), "", &mut rows);
+        let unit = |key: &str| results.unit_of(key);
+        collect(object.unwrap_or(&Value::Null), "", &unit, &mut rows);
         self.text(format_args!("<table>\n"));
         for (name, value) in rows {
             self.text(format_args!(
@@ -354,7 +354,12 @@ impl Page {
     }
 }
 
-fn collect(value: &Value, name: &str, rows: &mut Vec<(String, String)>) {
+fn collect(
+    value: &Value,
+    name: &str,
+    unit: &dyn Fn(&str) -> String,
+    rows: &mut Vec<(String, String)>,
+) {
     let text = match value {
         Value::Object(object) => {
             for (key, value) in object {
@@ -362,27 +367,27 @@ fn collect(value: &Value, name: &str, rows: &mut Vec<(String, String)>) {
                     "" => key.clone(),
                     outer => format!("{outer}, {key}"),
                 };
-                collect(value, &name, rows);
+                collect(value, &name, unit, rows);
             }
             return;
         }
         Value::Null => return,
         Value::Array(items) if items.is_empty() => return,
         Value::Array(items) => {
-            let items: Vec<String> = items.iter().map(|item| shown(name, item)).collect();
+            let items: Vec<String> = items.iter().map(|item| shown(name, item, unit)).collect();
             items.join(", ")
         }
-        other => shown(name, other),
+        other => shown(name, other, unit),
     };
     rows.push((name.replace('_', " "), text));
 }
 
 /// Returns a rounded value with the unit of its key.
-fn shown(name: &str, value: &Value) -> String {
+fn shown(name: &str, value: &Value, unit: &dyn Fn(&str) -> String) -> String {
     let key = name.rsplit(", ").next().unwrap_or(name);
     match value {
         Value::String(text) => text.clone(),
-        Value::Number(number) => match (number.as_u64(), number.as_f64(), unit_of(key)) {
+        Value::Number(number) => match (number.as_u64(), number.as_f64(), &*unit(key)) {
             (Some(whole), _, "B") => bytes(whole),
             (Some(whole), _, "") => count(whole),
             (_, Some(x), "") => significant(x, 4),
@@ -393,43 +398,6 @@ fn shown(name: &str, value: &Value) -> String {
         Value::Bool(false) => "no".into(),
         other => other.to_string(),
     }
-}
-
-/// Returns the SI unit of a number of `run.json`; empty if it has none.
-fn unit_of(key: &str) -> &'static str {
-    const UNITS: [(&str, &[&str]); 9] = [
-        ("m", &["spacing", "horizon"]),
-        ("s", &["dt", "stable_step", "t", "wall_seconds"]),
-        (
-            "rad/s",
-            &[
-                "highest_frequency",
-                "highest_frequency_bound",
-                "limiting_frequency",
-                "limiting_frequency_bound",
-            ],
-        ),
-        ("Pa", &["youngs_modulus", "bulk_modulus", "shear_modulus"]),
-        ("J/m²", &["fracture_energy"]),
-        (
-            "J",
-            &[
-                "kinetic_energy",
-                "elastic_energy",
-                "dissipated_energy",
-                "external_work",
-                "initial_energy",
-                "scheme_correction",
-                "balance",
-                "largest_balance",
-            ],
-        ),
-        ("kg m/s", &["momentum", "impulse", "momentum_error"]),
-        ("B", &["memory_estimate", "peak_memory"]),
-        ("1/s", &["directed_bond_updates_per_second"]),
-    ];
-    let found = UNITS.iter().find(|(_, keys)| keys.contains(&key));
-    found.map_or("", |(unit, _)| unit)
 }
 
 /// Returns at most [`MOST_PICTURES`] evenly spaced entries, including the first and the last.

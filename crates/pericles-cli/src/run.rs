@@ -10,7 +10,7 @@ use pericles_run::{
 };
 
 use crate::args::{ResumeArgs, RunArgs};
-use crate::charts;
+use crate::charts::{Scales, of_table};
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
@@ -23,7 +23,6 @@ use crate::signals::Signals;
 use crate::summary;
 use crate::sweep;
 use crate::text_chart::TextChart;
-use pericles_run::TimeAxis;
 
 /// Runs a deck.
 ///
@@ -186,8 +185,8 @@ fn drive(
         summary::closing(run.report(), run.folder())?;
     }
     if chart {
-        let along = TimeAxis::of(&Results::open(run.folder())?);
-        let charts = charts::of_table(&run.folder().join("history.csv"), along, |_| true)?;
+        let scales = Scales::of(&Results::open(run.folder())?);
+        let charts = of_table(&run.folder().join("history.csv"), &scales, |_| true)?;
         for chart in &charts {
             console::print(format_args!("{}", TextChart::of(chart)))?;
         }

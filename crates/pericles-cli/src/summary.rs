@@ -4,7 +4,7 @@ use std::path::Path;
 
 use pericles_io::IoError;
 use pericles_run::units::{bytes, count, duration, percent, quantity, significant, threads};
-use pericles_run::{Audit, Report, Status};
+use pericles_run::{Audit, Facts, Report, Status};
 
 use crate::console;
 
@@ -55,9 +55,9 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
     if let Some(audit) = &report.audit {
         // A body that does not move, with heat conduction only, has neither.
         if audit.momentum.is_some() || audit.static_balance.is_some() {
-            energies(audit)?;
+            energies(audit, model)?;
         }
-        heat(audit)?;
+        heat(audit, model)?;
         if let Some(error) = audit.force_rounding {
             console::print(format_args!(
                 "rounding error of single-precision forces at the end: {} of the largest force",
@@ -91,34 +91,36 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
     ))
 }
 
-fn heat(audit: &Audit) -> Result<(), IoError> {
+fn heat(audit: &Audit, model: &Facts) -> Result<(), IoError> {
+    let energy = |value: f64| quantity(value, &model.unit("J"));
     let Some(heat) = &audit.heat else {
         return Ok(());
     };
     let through: f64 = heat.inflows.iter().map(|one| one.heat).sum();
     let generated = match heat.from_dissipation {
-        Some(heat) => format!(", {} from dissipation", quantity(heat, "J")),
+        Some(heat) => format!(", {} from dissipation", energy(heat)),
         None => String::new(),
     };
     let balance = match (heat.balance, heat.balance_relative) {
         (Some(error), Some(relative)) => format!(
             "; heat balance: error {} ({})",
-            quantity(error, "J"),
+            energy(error),
             percent(relative)
         ),
         _ => String::new(),
     };
     console::print(format_args!(
         "heat: content {}, initially {}; {} through conditions{generated}{balance}; temperature {} to {}",
-        quantity(heat.content, "J"),
-        quantity(heat.initial_content, "J"),
-        quantity(through, "J"),
+        energy(heat.content),
+        energy(heat.initial_content),
+        energy(through),
         quantity(heat.lowest, "K"),
         quantity(heat.highest, "K"),
     ))
 }
 
-fn energies(audit: &Audit) -> Result<(), IoError> {
+fn energies(audit: &Audit, model: &Facts) -> Result<(), IoError> {
+    let shown = |value: f64| quantity(value, &model.unit("J"));
     let more = [
         ("contact", audit.contact_energy),
         ("dissipated by contact", audit.contact_dissipated),
@@ -126,16 +128,16 @@ fn energies(audit: &Audit) -> Result<(), IoError> {
     ];
     let more = more.into_iter().filter_map(|(name, energy)| {
         let energy = energy.filter(|energy| *energy != 0.0)?;
-        Some(format!(", {name} {}", quantity(energy, "J")))
+        Some(format!(", {name} {}", shown(energy)))
     });
     console::print(format_args!(
         "energy: kinetic {}, elastic {}, dissipated {}{}; initially {}, external work {}",
-        quantity(audit.kinetic_energy, "J"),
-        quantity(audit.elastic_energy, "J"),
-        quantity(audit.dissipated_energy, "J"),
+        shown(audit.kinetic_energy),
+        shown(audit.elastic_energy),
+        shown(audit.dissipated_energy),
         more.collect::<String>(),
-        quantity(audit.initial_energy, "J"),
-        quantity(audit.external_work, "J"),
+        shown(audit.initial_energy),
+        shown(audit.external_work),
     ))?;
     let forces = match &audit.static_balance {
         Some(balance) => format!(
@@ -145,13 +147,14 @@ fn energies(audit: &Audit) -> Result<(), IoError> {
             significant(balance.moment_relative, 2)
         ),
         None => format!(
-            "; momentum error {} kg m/s",
-            significant(audit.momentum_error, 2)
+            "; momentum error {} {}",
+            significant(audit.momentum_error, 2),
+            model.unit("kg m/s")
         ),
     };
     console::print(format_args!(
         "energy balance: error {} ({}){forces}; {} bonds broken, largest damage {:.2}",
-        quantity(audit.balance, "J"),
+        shown(audit.balance),
         percent(audit.energy_drift),
         count(audit.broken_bonds),
         audit.largest_damage,

@@ -122,8 +122,7 @@ impl Audit {
                 .sum::<f64>()
                 .sqrt()
         };
-        let (domain, volumes) = (system.domain(), system.cloud().volumes());
-        let mass = domain.sum(system.points(), |i| system.density().at(i) * volumes[i]);
+        let (domain, mass) = (system.domain(), system.mass());
         let damage = snapshot.field(Field::Damage).iter().copied();
         let touching = |energy: f64| system.has_interactions().then_some(energy);
         let largest_work = system.ledger().largest_work;

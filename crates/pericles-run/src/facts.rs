@@ -1,5 +1,6 @@
 //! Properties of a run before its first step, for reports, `check` and `run.json`.
 
+use pericles::units::BodyUnits;
 use pericles_deck::{Body, Deck, LoadControl, Model, ModelWarning, Scheme};
 use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde::Serialize;
@@ -9,19 +10,25 @@ use crate::heat::HeatFacts;
 use crate::open_facts::OpenFacts;
 use crate::refinement::RefinementFacts;
 use crate::strength::{SofteningFacts, StrengthFacts};
-use crate::units::{bytes, count, quantity, significant};
+use crate::units::{bytes, count, quantity, significant, unit_per};
 
 /// Properties of a run before its first step; SI units.
 #[derive(Debug, Clone, Serialize)]
 pub struct Facts {
     /// Dimension of the body.
     pub dimension: usize,
+    /// Thickness, `m`, or area, `m2`, by which forces, energies, momenta and masses of the body are divided: if the deck gives
+    /// none, they are those per metre or square metre.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub units_per: Option<&'static str>,
     /// Number of points.
     pub points: usize,
     /// Spacing of the points, m.
     pub spacing: f64,
     /// Horizon, m.
     pub horizon: f64,
+    /// Mass of the body, kg.
+    pub mass: f64,
     /// Number of bonds, each counted once, without those cut by pre-cracks.
     pub bonds: u64,
     /// Number of bonds, each counted from both ends.
@@ -219,22 +226,29 @@ pub struct LoadFacts {
     pub force: Vec<f64>,
     /// Time of the largest resultant.
     pub force_time: f64,
+    #[serde(skip)]
+    units: BodyUnits,
 }
 
 impl LoadFacts {
-    fn of(load: &LoadReport, dimension: usize) -> Self {
+    fn of(load: &LoadReport, dimension: usize, units: BodyUnits) -> Self {
         Self {
             set: load.set.clone(),
             points: load.points,
             area: load.area,
             force: load.force[..dimension].to_vec(),
             force_time: load.at,
+            units,
         }
     }
 
     /// Returns a summary line.
     pub fn line(&self) -> String {
-        let force: Vec<String> = self.force.iter().map(|f| quantity(*f, "N")).collect();
+        let force: Vec<String> = self
+            .force
+            .iter()
+            .map(|f| self.units.quantity(*f, "N"))
+            .collect();
         let area = self.area.map_or_else(String::new, |area| {
             format!(" on {} mm²", significant(1e6 * area, 4))
         });
@@ -314,6 +328,7 @@ impl Facts {
         let (domain, dimension) = (assembly.cloud.domain(), assembly.cloud.dimension());
         let points = domain.whole_points();
         let directed_bonds = domain.count(operator.directed_bonds());
+        let units = assembly.cloud.body_units();
         let constants = assembly.constants.as_ref();
         let finite = |x: f64| x.is_finite().then_some(x);
         let bonds = constants.and_then(MaterialConstants::bonds);
@@ -324,9 +339,11 @@ impl Facts {
         let shear = state_based.and_then(|constants| constants.lattice_shear);
         Self {
             dimension,
+            units_per: units.per(),
             points,
             spacing: assembly.cloud.spacing(),
             horizon: model.body.horizon(),
+            mass: assembly.system.mass(),
             bonds: directed_bonds / 2,
             directed_bonds,
             precut_bonds: assembly.precut_bonds,
@@ -381,7 +398,7 @@ impl Facts {
             loads: assembly
                 .loads
                 .iter()
-                .map(|load| LoadFacts::of(load, dimension))
+                .map(|load| LoadFacts::of(load, dimension, units))
                 .collect(),
             pieces: model
                 .body
@@ -402,6 +419,11 @@ impl Facts {
             properties: assembly.properties.iter().map(PropertyFacts::of).collect(),
             warnings,
         }
+    }
+
+    /// Returns the unit of a quantity of the body that has the given unit for the whole body.
+    pub fn unit(&self, whole: &str) -> String {
+        unit_per(whole, self.units_per)
     }
 
     /// Returns the properties of the assembly of a deck, with locations of warnings.

@@ -2,6 +2,7 @@
 
 use pericles::Simulation;
 use pericles::observe::{ObserveError, Snapshot};
+use pericles::units::BodyUnits;
 use pericles_heat::{DiffusingField, SharedField};
 use pericles_io::observers::Signals;
 use pericles_io::{Cell, Column};
@@ -134,23 +135,29 @@ fn inflows(field: &SharedField, t: f64) -> Vec<Inflow> {
 
 /// Columns of bodies with heat conduction: heat content, heat through the conditions of each set and from dissipated
 /// energy since the start, and the extremes of the temperature.
-pub(crate) struct HeatColumns(SharedField);
+pub(crate) struct HeatColumns {
+    field: SharedField,
+    units: BodyUnits,
+}
 
 impl HeatColumns {
     /// Returns the columns of a system, if its body conducts heat.
     pub(crate) fn of(system: &pericles::System) -> Option<Self> {
-        of_system(system).map(Self)
+        let units = system.cloud().body_units();
+        of_system(system).map(|field| Self { field, units })
     }
 }
 
 impl Signals for HeatColumns {
     fn columns(&self) -> Vec<Column> {
-        let mut columns = vec![Column::real("heat_content", "J")];
-        for inflow in inflows(&self.0, 0.0) {
-            columns.push(Column::real(format!("heat_through_{}", inflow.set), "J"));
+        let unit = self.units.unit("J");
+        let heat = |name: String| Column::real(name, unit.as_str());
+        let mut columns = vec![heat("heat_content".into())];
+        for inflow in inflows(&self.field, 0.0) {
+            columns.push(heat(format!("heat_through_{}", inflow.set)));
         }
-        if self.0.heat_from_dissipation().is_some() {
-            columns.push(Column::real("heat_from_dissipation", "J"));
+        if self.field.heat_from_dissipation().is_some() {
+            columns.push(heat("heat_from_dissipation".into()));
         }
         columns.extend(
             ["lowest_temperature", "highest_temperature"].map(|name| Column::real(name, "K")),
@@ -160,11 +167,13 @@ impl Signals for HeatColumns {
 
     fn cells(&self, snapshot: &Snapshot<'_>) -> Result<Vec<Cell>, ObserveError> {
         let t = snapshot.state().t;
-        let heats = inflows(&self.0, t).into_iter().map(|inflow| inflow.heat);
-        let mut cells = vec![Cell::Real(self.0.content(t))];
+        let heats = inflows(&self.field, t)
+            .into_iter()
+            .map(|inflow| inflow.heat);
+        let mut cells = vec![Cell::Real(self.field.content(t))];
         cells.extend(heats.map(Cell::Real));
-        cells.extend(self.0.heat_from_dissipation().map(Cell::Real));
-        cells.extend(self.0.range(t).map(Cell::Real));
+        cells.extend(self.field.heat_from_dissipation().map(Cell::Real));
+        cells.extend(self.field.range(t).map(Cell::Real));
         Ok(cells)
     }
 }

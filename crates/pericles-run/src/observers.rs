@@ -12,7 +12,7 @@ use pericles::family::Crack;
 use pericles::observe::{CrackTracker, Schedule};
 use pericles::space::PointCloud;
 use pericles_deck::{
-    FieldFormat, Model, Picture, PictureColours, PictureFormat, PictureLook, Precision,
+    FieldFormat, Model, Picture, PictureColours, PictureFormat, PictureLook, Precision, TimeStep,
 };
 use pericles_io::observers::{
     CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, ForceDisplacement,
@@ -27,7 +27,7 @@ use crate::build::{Assembly, ExactReference, Meshes, Sets, gathered, is_on_grid}
 use crate::checkpoint;
 use crate::error::RunError;
 use crate::origin;
-use crate::signals::{QuantitySignals, history_signals, scales_loads};
+use crate::signals::{QuantitySignals, breaks_by_events, history_signals, scales_loads};
 
 use self::impactors::add_impactors;
 
@@ -58,13 +58,17 @@ pub(crate) fn observed(
     let loaded: Vec<String> = model.loads.iter().map(|load| load.set.clone()).collect();
     let acts = !assembly.system.motions().is_empty() || !loaded.is_empty();
     let curve = (model.time.scheme.is_static() && acts).then(|| {
-        ForceDisplacement::new(
+        let curve = ForceDisplacement::new(
             folder.file("force_displacement.csv"),
             folder.file("force_displacement.png"),
             model.title.clone().unwrap_or_default(),
             &assembly.system,
             &loaded,
-        )
+        );
+        match breaks_by_events(model) {
+            true => curve.event_driven(),
+            false => curve,
+        }
     });
     let cracks = assembly.cracks.clone();
     let exact = assembly.exact.take();
@@ -106,7 +110,8 @@ pub(crate) fn observed(
     if can_break && output.fragments.schedule != Schedule::Never {
         names.push("fragments.csv".into());
         let smallest = output.fragments.smallest;
-        let course = FragmentCourse::new(folder.file("fragments.csv"), smallest);
+        let course =
+            FragmentCourse::new(folder.file("fragments.csv"), smallest, cloud.body_units());
         simulation.observe(output.fragments.schedule, Box::new(course));
     }
     if let Some(surface) = &surface {
@@ -128,9 +133,9 @@ pub(crate) fn observed(
 /// Returns the tables of signals: file, name of the length in checkpoints, content.
 fn signal_tables(assembly: &Assembly) -> Vec<(&'static str, &'static str, Box<dyn Signals>)> {
     let mut tables: Vec<(_, _, Box<dyn Signals>)> = Vec::new();
-    let (motions, probes) = (assembly.system.motions(), assembly.probes.clone());
-    if !motions.is_empty() {
-        let reactions = ReactionSignals::new(motions);
+    let probes = assembly.probes.clone();
+    if !assembly.system.motions().is_empty() {
+        let reactions = ReactionSignals::new(&assembly.system);
         tables.push(("reactions.csv", "observer/reactions", Box::new(reactions)));
     }
     if !probes.is_empty() {
@@ -152,10 +157,10 @@ pub fn history_rows(
     simulation: &Simulation,
     exact: Option<ExactReference>,
 ) -> HistoryRows {
-    let (output, dimension) = (&model.output, simulation.system().dimension());
+    let (output, cloud) = (&model.output, simulation.system().cloud());
     let [of_scheme, of_state] =
         history_signals(model, simulation.system(), simulation.integrator());
-    let mut rows = HistoryRows::new(dimension);
+    let mut rows = HistoryRows::new(cloud);
     for signals in of_scheme {
         rows = rows.with_signals(signals);
     }
@@ -163,7 +168,10 @@ pub fn history_rows(
         rows = rows.with(ErrorColumns::new(solution, points));
     }
     if let Some(time) = output.energy_bound {
-        rows = rows.with(EnergyBoundColumns(EnergyInequality::new(1.0 / time)));
+        rows = rows.with(EnergyBoundColumns {
+            inequality: EnergyInequality::new(1.0 / time),
+            units: cloud.body_units(),
+        });
     }
     for signals in of_state {
         rows = rows.with_signals(signals);
@@ -182,7 +190,7 @@ pub fn picture_of(model: &Model, picture: &Picture, surface: Option<&Arc<Surface
         title: model.title.clone().unwrap_or_default(),
         view: picture.view,
         surface: surface.cloned(),
-        load_end: load_end(model),
+        progress: progress(model),
         ..PictureOf::new(picture.field)
     }
 }
@@ -209,9 +217,21 @@ fn style_of(look: &PictureLook) -> PictureStyle {
     }
 }
 
-/// Returns the time at which all loads of a static run act; none if the time is not proportional to the loads.
-fn load_end(model: &Model) -> Option<f64> {
-    (model.time.scheme.is_static() && !scales_loads(model)).then_some(model.time.end)
+/// Returns the name of the time of static states and the time of one unit (s): the load factor, which is one at the end, or the
+/// load step if each step breaks a bond; none if the time is that of a controlled quantity.
+fn progress(model: &Model) -> Option<(&'static str, f64)> {
+    let end = model.time.end;
+    match model.time.step {
+        TimeStep::Equal(steps) if breaks_by_events(model) => {
+            Some(("load step", end / steps as f64))
+        }
+        _ if scales_loads(model) => None,
+        _ => model
+            .time
+            .scheme
+            .is_static()
+            .then_some(("load factor", end)),
+    }
 }
 
 /// Returns the surfaces of the pre-cracks of an assembly.

@@ -9,6 +9,7 @@ use serde_json::Value;
 use crate::error::RunError;
 use crate::machine;
 use crate::source::SourceRecord;
+use crate::units::{is_of_body, unit_of_number, unit_per};
 
 /// The results of a run.
 pub struct Results {
@@ -90,6 +91,13 @@ impl Results {
     /// Returns a number of `run.json`.
     pub fn number(&self, pointer: &str) -> Option<f64> {
         self.value(pointer)?.as_f64()
+    }
+
+    /// Returns the SI unit of a number of `run.json`, such as `audit.balance`; empty for ratios and counts.
+    pub fn unit_of(&self, name: &str) -> String {
+        let unit = unit_of_number(name);
+        let per = self.value("/model/units_per").and_then(Value::as_str);
+        unit_per(unit, per.filter(|_| is_of_body(unit)))
     }
 
     /// Returns a count of `run.json`; zero if missing.

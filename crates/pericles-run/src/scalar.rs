@@ -73,7 +73,7 @@ impl Scalar {
             known.extend(table.columns.iter().map(|column| column.name().to_owned()));
         }
         let pointer = format!("/{}", self.name.replace('.', "/"));
-        let unit = unit_of_number(&self.name).to_owned();
+        let unit = results.unit_of(&self.name);
         let number = results.number(&pointer).map(|number| (number, unit));
         number.ok_or_else(|| {
             let listing = format!(
@@ -93,37 +93,6 @@ impl Scalar {
     }
 }
 
-/// Returns the SI unit of a number of `run.json`; empty for ratios and counts.
-fn unit_of_number(name: &str) -> &'static str {
-    /// Ends of names and their units.
-    const UNITS: [(&str, &str); 17] = [
-        ("_energy", "J"),
-        ("_work", "J"),
-        (".contact_dissipated", "J"),
-        (".impactor_kinetic", "J"),
-        (".scheme_correction", "J"),
-        (".balance", "J"),
-        (".largest_balance", "J"),
-        (".momentum_error", "kg m/s"),
-        (".spacing", "m"),
-        (".horizon", "m"),
-        (".dt", "s"),
-        (".stable_step", "s"),
-        (".t", "s"),
-        (".wall_seconds", "s"),
-        (".youngs_modulus", "Pa"),
-        (".highest_frequency", "1/s"),
-        (".limiting_frequency", "1/s"),
-    ];
-    match name {
-        "model.fracture_energy" => return "J/m2",
-        ratio if ratio.contains("_over_") => return "",
-        _ => {}
-    }
-    let known = UNITS.iter().find(|(end, _)| name.ends_with(end));
-    known.map_or("", |(_, unit)| *unit)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -140,19 +109,5 @@ mod tests {
             Scalar::named("audit.elastic_energy").title(),
             "elastic energy"
         );
-    }
-
-    #[test]
-    fn numbers_of_reports_have_units() {
-        for (name, unit) in [
-            ("audit.elastic_energy", "J"),
-            ("audit.balance", "J"),
-            ("audit.balance_over_work", ""),
-            ("model.fracture_energy", "J/m2"),
-            ("model.dt", "s"),
-            ("audit.broken_bonds", ""),
-        ] {
-            assert_eq!(unit_of_number(name), unit, "{name}");
-        }
     }
 }

@@ -9,6 +9,7 @@ use std::sync::Arc;
 
 use pericles::System;
 use pericles::observe::{ObserveError, Probe, Snapshot, TrackedCrack};
+use pericles::space::PointCloud;
 use pericles::time::Integrator;
 use pericles_deck::{
     BuildError, DerivedQuantity, Fault, KeyPath, Model, Remark, Scheme, SignalCondition,
@@ -86,25 +87,36 @@ pub(crate) fn history_signals(
         of_state.push(Box::new(columns));
     }
     if system.interactions().next().is_some() {
-        of_state.push(Box::new(ContactColumns));
+        of_state.push(Box::new(ContactColumns {
+            units: system.cloud().body_units(),
+        }));
     }
     [of_scheme, of_state]
 }
 
 /// Returns whether the scheme determines the factor of the loads, so that they are not proportional to time.
 pub(crate) fn scales_loads(model: &Model) -> bool {
+    breaks_by_events(model)
+        || matches!(&model.time.scheme, Scheme::Static(options) if options.control.is_some())
+}
+
+/// Returns whether a static scheme finds the loads at which each bond breaks.
+pub(crate) fn breaks_by_events(model: &Model) -> bool {
     matches!(
         &model.time.scheme,
-        Scheme::Static(options)
-            if options.breaking == StaticBreaking::Event || options.control.is_some()
+        Scheme::Static(options) if options.breaking == StaticBreaking::Event
     )
 }
 
 /// Returns the impactors of a model as signals; `None` without impactors.
-pub(crate) fn impactor_signals(model: &Model, dimension: usize) -> Option<ImpactorSignals> {
+pub(crate) fn impactor_signals(model: &Model, cloud: &PointCloud) -> Option<ImpactorSignals> {
     let impactors = model.impactors.iter().map(|impactor| impactor.name.clone());
     let names: Vec<String> = impactors.collect();
-    (!names.is_empty()).then_some(ImpactorSignals { names, dimension })
+    (!names.is_empty()).then_some(ImpactorSignals {
+        names,
+        dimension: cloud.dimension(),
+        units: cloud.body_units(),
+    })
 }
 
 impl SignalRegistry {
@@ -125,15 +137,18 @@ impl SignalRegistry {
             quantities: Vec::new(),
         };
         registry.add(Box::new(TimeSignal));
-        registry.add(Box::new(EnergySignals { dimension }));
+        registry.add(Box::new(EnergySignals {
+            dimension,
+            units: system.cloud().body_units(),
+        }));
         let of_history = history_signals(model, system, integrator);
         (of_history.into_iter().flatten()).for_each(|signals| registry.add(signals));
         registry.add(Box::new(ProbeSignals {
             probes: probes.to_vec(),
             dimension,
         }));
-        registry.add(Box::new(ReactionSignals::new(system.motions())));
-        if let Some(impactors) = impactor_signals(model, dimension) {
+        registry.add(Box::new(ReactionSignals::new(system)));
+        if let Some(impactors) = impactor_signals(model, system.cloud()) {
             registry.add(Box::new(impactors));
         }
         if system.operator().can_break() {

@@ -185,8 +185,7 @@ fn momentum(simulation: &Simulation, audit: &Audit) -> Option<String> {
         return None;
     }
     let system = simulation.system();
-    let masses = system.masses();
-    let mass = system.domain().sum(masses.len(), |k| masses[k]) / system.dimension() as f64;
+    let mass = system.mass();
     // Not the energy at the end: waves may have left the body, and static states have no kinetic energy.
     let energy = audit.initial_energy.abs() + system.ledger().exchanged;
     let error = audit.momentum_error / (2.0 * energy * mass).sqrt();
@@ -278,7 +277,7 @@ fn created_energy(simulation: &Simulation, audit: &Audit) -> Option<String> {
     (dissipated < -CREATED * exchanged).then(|| {
         format!(
             "the energy dissipated by breaking bonds and inelastic deformation is negative, {}: failure has supplied energy to the body; reduce the time step or the load steps and compare the results",
-            quantity(dissipated, "J")
+            simulation.system().cloud().body_units().quantity(dissipated, "J")
         )
     })
 }

@@ -89,7 +89,7 @@ impl System {
         let rate = domain.sum(pushed.len(), |k| impulse[pushed[k]] * v[pushed[k]]);
         let compliance = domain.sum(pushed.len(), |k| {
             let entry = pushed[k];
-            free[entry] * impulse[entry] * impulse[entry] / self.mass(entry % n)
+            free[entry] * impulse[entry] * impulse[entry] / self.mass_of(entry % n)
         });
         let scale = separating_impulse(rate, compliance, missing);
         // Impulses opposite to the impulses of the bonds would not separate their ends.
@@ -107,7 +107,7 @@ impl System {
                 supports.push(-push * v[entry]);
                 reaction[entry / n].push(-push);
             } else {
-                let change = push / self.mass(entry % n);
+                let change = push / self.mass_of(entry % n);
                 given.push(push * (v[entry] + 0.5 * change));
                 v[entry] += change;
             }
@@ -162,7 +162,7 @@ impl System {
     }
 
     /// ρ V of a point, kg.
-    fn mass(&self, i: usize) -> f64 {
+    pub(crate) fn mass_of(&self, i: usize) -> f64 {
         self.density().at(i) * self.cloud().volumes()[i]
     }
 }
@@ -190,7 +190,7 @@ impl Ends {
     fn new(system: &System, t: f64, entries: usize) -> Self {
         let mut free = vec![1.0; entries];
         system.hold_at(t, &mut free);
-        let mass: Vec<f64> = (0..system.points()).map(|i| system.mass(i)).collect();
+        let mass: Vec<f64> = (0..system.points()).map(|i| system.mass_of(i)).collect();
         Self {
             free_ghosts: system.domain().ghosts(&free),
             mass: system.domain().with_ghosts(&mass).into_owned(),

@@ -8,7 +8,7 @@ use crate::error::{PericlesError, Result};
 use crate::observe::{ObserveError, Snapshot};
 use crate::space::{PointSet, check_points};
 use crate::system::System;
-use crate::units::quantity;
+use crate::units::BodyUnits;
 
 /// A condition of a program on an accepted state. It has no state of its own, so that a resumed run stops at the same step.
 pub trait StopTest: fmt::Debug + Send + Sync {
@@ -77,6 +77,8 @@ pub enum Found {
         now: f64,
         /// Largest reaction of the run, N.
         peak: f64,
+        /// Units of the body's forces.
+        units: BodyUnits,
     },
     /// The damage of a point of the set exceeded its limit.
     Damage {
@@ -96,12 +98,12 @@ impl fmt::Display for StopReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let name = &self.name;
         match &self.found {
-            Found::Reaction { now, peak } => write!(
+            Found::Reaction { now, peak, units } => write!(
                 f,
                 "the reaction of `{name}` has fallen to {:.2} % of its peak, from {} to {}",
                 100.0 * now / peak,
-                quantity(*peak, "N"),
-                quantity(*now, "N")
+                units.quantity(*peak, "N"),
+                units.quantity(*now, "N")
             ),
             Found::Damage { damage, point } => write!(
                 f,
@@ -173,7 +175,11 @@ impl StopWhen {
                 let now = sum.iter().map(|r| r * r).sum::<f64>().sqrt();
                 self.peak = self.peak.max(now);
                 let peak = self.peak;
-                (now < share * peak).then_some(Found::Reaction { now, peak })
+                (now < share * peak).then(|| Found::Reaction {
+                    now,
+                    peak,
+                    units: system.cloud().body_units(),
+                })
             }
             StopCondition::DamageAbove { damage, points } => {
                 let operator = system.operator();

@@ -6,6 +6,56 @@ const PREFIXED: [&str; 10] = ["m", "s", "N", "J", "Pa", "W", "Hz", "g", "K", "B"
 /// Prefixes from 10⁻¹² to 10¹².
 const PREFIXES: [&str; 9] = ["p", "n", "µ", "m", "", "k", "M", "G", "T"];
 
+/// Units of quantities of a whole body: forces, energies, momenta and masses.
+///
+/// A body in two dimensions that is 1 m thick, the default, represents one of any thickness, and a bar with an area of 1 m²
+/// one of any area. Their quantities are given per metre or per square metre.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BodyUnits {
+    dimension: usize,
+    is_unit: bool,
+}
+
+impl BodyUnits {
+    /// Returns the units of a body with the given thickness (m) in two dimensions or area (m²) in one dimension.
+    pub fn of(dimension: usize, section: f64) -> Self {
+        Self {
+            dimension,
+            is_unit: dimension < 3 && section == 1.0,
+        }
+    }
+
+    /// Returns the unit of the thickness or area by which the quantities are divided, `m` or `m2`; none if they are those of the
+    /// whole body.
+    pub fn per(self) -> Option<&'static str> {
+        match (self.is_unit, self.dimension) {
+            (false, _) => None,
+            (true, 1) => Some("m2"),
+            (true, _) => Some("m"),
+        }
+    }
+
+    /// Returns the unit of a quantity that has the given SI unit for the whole body: `N/m` for `N`.
+    pub fn unit(self, whole: &str) -> String {
+        unit_per(whole, self.per())
+    }
+
+    /// Formats a quantity of the whole body, with the given SI unit, as [`quantity`] does.
+    pub fn quantity(self, value: f64, whole: &str) -> String {
+        quantity(value, &self.unit(whole))
+    }
+}
+
+/// Returns the SI unit of a quantity of a body per metre of thickness or per square metre of area, or the unit itself.
+pub fn unit_per(whole: &str, per: Option<&str>) -> String {
+    match per {
+        None => whole.into(),
+        Some("m") if whole == "kg m/s" => "kg/s".into(),
+        Some("m") if whole == "N m" => "N".into(),
+        Some(per) => format!("{whole}/{per}"),
+    }
+}
+
 /// Scaling of numbers of one kind for display.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shown {
@@ -152,6 +202,18 @@ pub fn superscript(number: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn quantities_of_a_body_are_per_unit_section() {
+        let unit = |dimension, section| BodyUnits::of(dimension, section).unit("N");
+        assert_eq!(unit(1, 1.0), "N/m2");
+        assert_eq!(unit(2, 1.0), "N/m");
+        assert_eq!(unit(2, 0.01), "N");
+        assert_eq!(unit(3, 1.0), "N");
+        let plate = BodyUnits::of(2, 1.0);
+        assert_eq!(plate.unit("kg m/s"), "kg/s");
+        assert_eq!(plate.quantity(1200.0, "J"), "1.20 kJ/m");
+    }
 
     #[test]
     fn lengths_take_the_unit_of_their_size() {

@@ -11,12 +11,11 @@ use pericles_run::sweep::is_sweep;
 use pericles_run::{Results, RunError, file_name};
 
 use crate::args::PlotArgs;
-use crate::charts::{self, Chart};
+use crate::charts::{self, Chart, Scales};
 use crate::console;
 use crate::error::CliError;
 use crate::exit::Exit;
 use crate::text_chart::TextChart;
-use pericles_run::TimeAxis;
 
 pub(crate) use sweep::usual as usual_scalars;
 
@@ -101,10 +100,10 @@ fn stem(table: &Path) -> String {
 
 /// Returns the charts of the requested columns, by default of all, with the names of their tables.
 fn charts_of(results: &Results, columns: &[String]) -> Result<Vec<(String, Chart)>, CliError> {
-    let along = TimeAxis::of(results);
+    let scales = Scales::of(results);
     let (mut charts, mut known) = (Vec::new(), Vec::new());
     for table in results.tables() {
-        let found = charts::of_table(&table, along, |column| {
+        let found = charts::of_table(&table, &scales, |column| {
             known.push(column.to_owned());
             columns.is_empty() || columns.iter().any(|wanted| wanted == column)
         })?;

@@ -4,7 +4,7 @@ mod advice;
 mod area;
 mod contact;
 
-use pericles::units::{precise, quantity, significant};
+use pericles::units::{BodyUnits, precise, quantity, significant};
 use pericles_manifold::surface::SurfaceCaution;
 
 pub use area::AreaCaution;
@@ -272,7 +272,7 @@ pub enum Caution {
     #[error(
         "the loads on {points} of {of} points, such as the one at {} m, have {} that no support takes",
         spot(place),
-        net(*force, *moment)
+        net(*force, *moment, *units)
     )]
     Unbalanced {
         /// Points of the part.
@@ -285,6 +285,8 @@ pub enum Caution {
         force: Option<f64>,
         /// The net moment about the centre of the part, N m.
         moment: Option<f64>,
+        /// Units of the body's forces.
+        units: BodyUnits,
     },
     /// A probe outside the body.
     #[error("the probe `{name}` is {} away from the nearest point", quantity(*distance, "m"))]
@@ -478,9 +480,9 @@ fn share(part: usize, whole: usize) -> String {
 }
 
 /// `a net force of 3.00 N and a net moment of 1.00 N m`
-fn net(force: Option<f64>, moment: Option<f64>) -> String {
-    let force = force.map(|force| format!("a net force of {}", quantity(force, "N")));
-    let moment = moment.map(|moment| format!("a net moment of {}", quantity(moment, "N m")));
+fn net(force: Option<f64>, moment: Option<f64>, units: BodyUnits) -> String {
+    let force = force.map(|force| format!("a net force of {}", units.quantity(force, "N")));
+    let moment = moment.map(|moment| format!("a net moment of {}", units.quantity(moment, "N m")));
     let both: Vec<String> = force.into_iter().chain(moment).collect();
     both.join(" and ")
 }

@@ -3,9 +3,10 @@
 //! Every scalar time history is a column of `history.csv`: inner iterations, errors against a known solution, bounds
 //! of the energy.
 
+use pericles::Checkpointed;
 use pericles::observe::{Field, ObserveError, Snapshot};
 use pericles::space::PointSet;
-use pericles::{Archive, Checkpointed, Result};
+use pericles::units::BodyUnits;
 use pericles_manifold::EnergyInequality;
 use pericles_waves::exact::{ExactSolution, SolutionError};
 
@@ -171,32 +172,32 @@ impl Signals for ExtremeColumns {
 }
 
 /// Upper bound of kinetic plus elastic energy and the margin below it, J.
-pub struct EnergyBoundColumns(pub EnergyInequality);
+pub struct EnergyBoundColumns {
+    /// The bound.
+    pub inequality: EnergyInequality,
+    /// Units of the energies.
+    pub units: BodyUnits,
+}
 
 impl HistoryColumns for EnergyBoundColumns {
     fn columns(&self) -> Vec<Column> {
-        vec![
-            Column::real("energy_bound", "J"),
-            Column::real("energy_margin", "J"),
-        ]
+        let names = ["energy_bound", "energy_margin"];
+        names
+            .map(|name| Column::real(name, self.units.unit("J")))
+            .into()
     }
 
     fn cells(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
-        let bound = self.0.bound(snapshot);
+        let bound = self.inequality.bound(snapshot);
         let energies = snapshot.energies();
         let margin = bound - energies.kinetic - energies.elastic;
         Ok(vec![bound.into(), margin.into()])
     }
 }
 
-impl Checkpointed for EnergyBoundColumns {
-    fn save(&self, archive: &mut Archive) {
-        let Self(inequality) = self;
-        inequality.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> Result<()> {
-        let Self(inequality) = self;
-        inequality.restore(archive)
+pericles::saved! {
+    impl Checkpointed for EnergyBoundColumns {
+        inequality: part,
+        units: fixed,
     }
 }

@@ -15,13 +15,18 @@ use crate::picture::{Axis, Curve, LineChart};
 ///
 /// Columns: step, time, then `<name>_displacement_<axis>` in metres and `<name>_force_<axis>` in newtons. The
 /// force acts from the support or load on the body. Displacements are taken from the body, so that they are correct
-/// if a scheme scales the prescribed values. The chart shows the motions whose displacement changes.
+/// if a scheme scales the prescribed values. The chart shows the motions whose displacement changes. If the scheme finds
+/// the loads of each breaking bond, the displacement may decrease from one state to the next (snap-back), which no test with
+/// increasing displacement shows: the chart then shows the states whose displacement exceeds all earlier ones, and the whole
+/// path in grey.
 pub struct ForceDisplacement {
     table: ObserverTable,
     path: PathBuf,
     chart: PathBuf,
     title: String,
     pairs: Vec<Pair>,
+    unit: String,
+    is_event_driven: bool,
 }
 
 /// A pair of columns.
@@ -53,11 +58,12 @@ impl ForceDisplacement {
     ) -> Self {
         let path = table.into();
         let pairs = pairs(system, loaded);
+        let unit = system.cloud().body_units().unit("N");
         let mut columns = step_and_time();
         for pair in &pairs {
             let [displacement, force] = names(&pair.name, pair.axis);
             columns.push(Column::real(displacement, "m"));
-            columns.push(Column::real(force, "N"));
+            columns.push(Column::real(force, unit.as_str()));
         }
         Self {
             table: ObserverTable::new(path.clone(), "observer/force_displacement", columns),
@@ -65,7 +71,16 @@ impl ForceDisplacement {
             chart: chart.into(),
             title: title.into(),
             pairs,
+            unit,
+            is_event_driven: false,
         }
+    }
+
+    /// Marks the states as those in which bonds break, at loads that the scheme finds.
+    #[must_use]
+    pub fn event_driven(mut self) -> Self {
+        self.is_event_driven = true;
+        self
     }
 
     /// Draws the chart from the table.
@@ -75,24 +90,54 @@ impl ForceDisplacement {
         }
         let table = read_csv(&self.path)?;
         let column = |name: &str| table.column(name).unwrap_or_default();
-        let axes = (Axis::new("displacement", "m"), Axis::new("force", "N"));
+        let axes = (
+            Axis::new("displacement", "m"),
+            Axis::new("force", self.unit.as_str()),
+        );
         let mut chart = LineChart::new(axes.0, axes.1).title(&self.title);
-        let mut curves = 0;
+        let (mut curves, mut has_path) = (0, false);
         for Pair { name, axis, .. } in &self.pairs {
             let [displacement, force] = names(name, *axis);
             let (x, y) = (column(&displacement), column(&force));
-            let moves = x.iter().any(|u| *u != x[0]);
-            if moves {
-                let label = format!("{} {}", name.replace('_', " "), AXES[*axis]);
-                chart = chart.curve(Curve::line(label, x, y).with_markers());
-                curves += 1;
+            if x.iter().all(|u| *u == x[0]) {
+                continue;
             }
+            let outer = match self.is_event_driven {
+                true => envelope(x),
+                false => (0..x.len()).collect(),
+            };
+            if outer.len() < x.len() {
+                let label = if has_path { "" } else { "all states" };
+                chart = chart.curve(Curve::line(label, x, y).colour(PATH));
+                has_path = true;
+            }
+            let [x, y] =
+                [x, y].map(|column| -> Vec<f64> { outer.iter().map(|&k| column[k]).collect() });
+            let label = format!("{} {}", name.replace('_', " "), AXES[*axis]);
+            chart = chart.curve(Curve::line(label, &x, &y).with_markers());
+            curves += 1;
         }
         match curves {
             0 => Ok(()),
             _ => chart.write(&self.chart),
         }
     }
+}
+
+/// Colour of the path through all states.
+const PATH: [u8; 3] = [176, 176, 176];
+
+/// Returns the states whose displacement is at least that of all earlier ones, in magnitude.
+fn envelope(displacements: &[f64]) -> Vec<usize> {
+    let mut largest = 0.0;
+    let mut outer = Vec::new();
+    for (k, u) in displacements.iter().enumerate() {
+        if u.abs() >= largest {
+            largest = u.abs();
+            outer.push(k);
+        }
+    }
+    outer
 }
 
 fn pairs(system: &System, loaded: &[String]) -> Vec<Pair> {
@@ -163,6 +208,17 @@ impl Observer for ForceDisplacement {
 pericles::saved! {
     impl Checkpointed for ForceDisplacement {
         table: part,
-        path, chart, title, pairs: fixed,
+        path, chart, title, pairs, unit, is_event_driven: fixed,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn envelope_of_a_snap_back_has_growing_displacements() {
+        assert_eq!(envelope(&[0.0, 1.0, 0.6, 0.9, 1.2, 1.2]), [0, 1, 4, 5]);
+        assert_eq!(envelope(&[0.0, -1.0, -0.5, -2.0]), [0, 1, 3]);
     }
 }

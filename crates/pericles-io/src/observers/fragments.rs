@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use pericles::observe::{Fragments, ObserveError, Observer, Snapshot};
+use pericles::units::BodyUnits;
 
 use super::table::{ObserverTable, step_and_time, whole};
 use crate::csv::Column;
@@ -19,14 +20,15 @@ pub struct FragmentCourse {
 impl FragmentCourse {
     /// Creates the observer; a piece with at least the fraction `smallest` of the body's mass counts as a
     /// fragment.
-    pub fn new(path: impl Into<PathBuf>, smallest: f64) -> Self {
+    pub fn new(path: impl Into<PathBuf>, smallest: f64, units: BodyUnits) -> Self {
+        let mass = || units.unit("kg");
         let mut columns = step_and_time();
         columns.push(Column::integer("fragments"));
-        columns.push(Column::real("largest_mass", "kg"));
+        columns.push(Column::real("largest_mass", mass()));
         columns.push(Column::integer("small_pieces"));
-        columns.push(Column::real("small_mass", "kg"));
+        columns.push(Column::real("small_mass", mass()));
         columns.push(Column::integer("single_points"));
-        columns.push(Column::real("single_mass", "kg"));
+        columns.push(Column::real("single_mass", mass()));
         Self {
             table: ObserverTable::new(path.into(), "observer/fragments", columns),
             smallest,

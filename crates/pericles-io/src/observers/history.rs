@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use pericles::observe::{ObserveError, Observer, Snapshot};
+use pericles::space::PointCloud;
 use pericles::{Archive, Checkpointed, Result};
 
 use super::HistoryColumns;
@@ -39,13 +40,16 @@ pub struct HistoryRows {
 }
 
 impl HistoryRows {
-    /// Creates the rows for a body of the given dimension.
-    pub fn new(dimension: usize) -> Self {
+    /// Creates the rows for the points of a body.
+    pub fn new(cloud: &PointCloud) -> Self {
         let rows = Self {
             columns: step_and_time(),
             parts: Vec::new(),
         };
-        rows.with_signals(EnergySignals { dimension })
+        rows.with_signals(EnergySignals {
+            dimension: cloud.dimension(),
+            units: cloud.body_units(),
+        })
     }
 
     /// Adds columns.

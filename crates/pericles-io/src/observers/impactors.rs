@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use pericles::observe::{ObserveError, Observer, Snapshot};
+use pericles::units::BodyUnits;
 use pericles::{Archive, Checkpointed, Result, Values};
 
 use super::rigid::{RigidMesh, impactors};
@@ -16,12 +17,17 @@ use crate::vtk::{PvdSeries, read_polydata, write_polydata};
 /// Energies of contact, as columns of a history: energy stored by contact, energy dissipated by dampers and friction,
 /// kinetic energy of free impactors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct ContactColumns;
+pub struct ContactColumns {
+    /// Units of the energies.
+    pub units: BodyUnits,
+}
 
 impl Signals for ContactColumns {
     fn columns(&self) -> Vec<Column> {
         let names = ["contact_energy", "contact_dissipated", "impactor_kinetic"];
-        names.map(|name| Column::real(name, "J")).into()
+        names
+            .map(|name| Column::real(name, self.units.unit("J")))
+            .into()
     }
 
     fn cells(&self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {
@@ -47,6 +53,8 @@ pub struct ImpactorSignals {
     pub names: Vec<String>,
     /// Dimension of the body.
     pub dimension: usize,
+    /// Units of forces and impulses.
+    pub units: BodyUnits,
 }
 
 /// Returns the axes about which impactors rotate.
@@ -71,9 +79,9 @@ impl Signals for ImpactorSignals {
             add("", along, "m");
             add("_v", along, "m/s");
             add("_spin", about, "rad/s");
-            add("_force", along, "N");
-            add("_torque", about, "N m");
-            add("_impulse", along, "N s");
+            add("_force", along, &self.units.unit("N"));
+            add("_torque", about, &self.units.unit("N m"));
+            add("_impulse", along, &self.units.unit("N s"));
             columns.push(Column::integer(format!("{name}_points")));
             columns.push(Column::real(format!("{name}_overlap"), "m"));
         }

@@ -42,6 +42,7 @@
 //! let bonds = BondList::new(&cloud, 0.3, VolumeCorrection::Extended)?;
 //! let never = Breaking { critical_stretch: f64::INFINITY, no_fail: &[] };
 //! let force = BondForce::<BondStretch, 1>::with_stiffness(cloud.clone(), bonds, &|_| 20.0, never, DamageMeasure::default())?;
+//! let rows = HistoryRows::new(&cloud);
 //! let system = System::new(cloud, Box::new(force), PointScalar::Uniform(1.0))?;
 //! let mut state = State::at_rest(10);
 //! state.v[0] = 0.01;
@@ -49,7 +50,7 @@
 //! let folder = tempfile::tempdir()?;
 //! let path = folder.path().join("history.csv");
 //! let mut simulation = Simulation::new(system, Box::new(VelocityVerlet), state, 0.05, 100)?;
-//! simulation.observe(Schedule::Every(10), Box::new(History::new(&path, HistoryRows::new(1))));
+//! simulation.observe(Schedule::Every(10), Box::new(History::new(&path, rows)));
 //! simulation.run(|_| pericles::Control::Continue)?;
 //! assert_eq!(pericles_io::read_csv(&path)?.rows(), 11);
 //! # Ok(())

@@ -38,8 +38,8 @@ pub struct PictureOf {
     pub style: PictureStyle,
     /// Lowest and highest coordinates of the region shown, m; `None` for the whole body.
     pub crop: Option<[[f64; 3]; 2]>,
-    /// Time at which all loads act, s; pictures of static states then show the load factor instead of the time.
-    pub load_end: Option<f64>,
+    /// Name of the time of static states, such as the load factor, and the time of one unit, s; `None` shows the time.
+    pub progress: Option<(&'static str, f64)>,
     /// Cells of the body and lines on it; `None` for squares or cubes around the points.
     pub shape: Option<Arc<BodyShape>>,
 }
@@ -105,7 +105,7 @@ impl PictureOf {
             steady: false,
             style: PictureStyle::default(),
             crop: None,
-            load_end: None,
+            progress: None,
             shape: None,
         }
     }
@@ -231,8 +231,8 @@ impl PictureOf {
             true => picture.categories(Vec::new()),
             false => picture.range(low, high),
         };
-        if let Some(end) = self.load_end {
-            picture = picture.load_factor(state.t / end);
+        if let Some((name, unit)) = self.progress {
+            picture = picture.progress(name, state.t / unit);
         }
         if let Some(shape) = &self.shape {
             let drawn = shape.drawn(cloud, state.displacement, state.damage, self.scale);

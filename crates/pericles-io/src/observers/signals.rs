@@ -5,8 +5,10 @@
 
 use std::path::PathBuf;
 
+use pericles::System;
 use pericles::boundary::PrescribedMotion;
 use pericles::observe::{ObserveError, Observer, Probe, ProbeReading, Snapshot};
+use pericles::units::BodyUnits;
 
 use super::table::{AXES, ObserverTable, step_and_time, whole};
 use crate::csv::{Cell, Column};
@@ -93,6 +95,8 @@ impl Signals for TimeSignal {
 pub struct EnergySignals {
     /// Dimension of the body.
     pub dimension: usize,
+    /// Units of the energies and momenta.
+    pub units: BodyUnits,
 }
 
 impl Signals for EnergySignals {
@@ -105,9 +109,12 @@ impl Signals for EnergySignals {
             "scheme_correction",
             "balance",
         ];
-        let mut columns: Vec<Column> = energies.map(|name| Column::real(name, "J")).into();
+        let mut columns: Vec<Column> = energies
+            .map(|name| Column::real(name, self.units.unit("J")))
+            .into();
         for axis in &AXES[..self.dimension] {
-            columns.push(Column::real(format!("momentum_{axis}"), "kg m/s"));
+            let unit = self.units.unit("kg m/s");
+            columns.push(Column::real(format!("momentum_{axis}"), unit));
         }
         columns.push(Column::integer("broken_bonds"));
         columns
@@ -173,26 +180,31 @@ impl Signals for ProbeSignals {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ReactionSignals {
     names: Vec<String>,
+    units: BodyUnits,
 }
 
 impl ReactionSignals {
     /// Creates the reactions of the motions of a system.
-    pub fn new(motions: &[PrescribedMotion]) -> Self {
+    pub fn new(system: &System) -> Self {
         let named = |motion: &PrescribedMotion| {
             let axes = motion.axes();
             let names = axes.map(|axis| format!("{}_{}", motion.name, AXES[axis]));
             names.collect::<Vec<_>>()
         };
         Self {
-            names: motions.iter().flat_map(named).collect(),
+            names: system.motions().iter().flat_map(named).collect(),
+            units: system.cloud().body_units(),
         }
     }
 }
 
 impl Signals for ReactionSignals {
     fn columns(&self) -> Vec<Column> {
+        let unit = self.units.unit("N");
         let names = self.names.iter();
-        names.map(|name| Column::real(name.as_str(), "N")).collect()
+        names
+            .map(|name| Column::real(name.as_str(), unit.as_str()))
+            .collect()
     }
 
     fn cells(&self, snapshot: &Snapshot<'_>) -> std::result::Result<Vec<Cell>, ObserveError> {

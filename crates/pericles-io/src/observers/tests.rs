@@ -76,7 +76,7 @@ fn simulation(folder: &Path) -> Simulation {
     let reactions = SignalTable::new(
         folder.join("reactions.csv"),
         "observer/reactions",
-        ReactionSignals::new(system.motions()),
+        ReactionSignals::new(&system),
     );
     let mut simulation =
         Simulation::new(system, Box::new(VelocityVerlet), state, 0.2, STEPS).unwrap();
@@ -104,8 +104,11 @@ fn simulation(folder: &Path) -> Simulation {
         centre: 6.0,
     };
     let errors = ErrorColumns::new(Box::new(line), (0..cloud.len() as u32).collect());
-    let bound = EnergyBoundColumns(EnergyInequality::new(0.1));
-    let rows = HistoryRows::new(2).with(errors).with(bound);
+    let bound = EnergyBoundColumns {
+        inequality: EnergyInequality::new(0.1),
+        units: cloud.body_units(),
+    };
+    let rows = HistoryRows::new(&cloud).with(errors).with(bound);
     let history = History::new(folder.join("history.csv"), rows);
     let probes = SignalTable::new(
         folder.join("probes.csv"),

@@ -2,7 +2,9 @@
 
 /// Range of values for a colour bar.
 ///
-/// Outliers do not determine the range: it ends at the percentiles 0.1 and 99.9 if the full range is more than 1.5 times as wide.
+/// Outliers, such as the stresses of a few points at supports, do not determine the range. It ends at the percentiles 0.5 and
+/// 99.5 if the full range is 2 to 20 times as wide, and at the percentiles 0.1 and 99.9 if it is more than 20 times as wide,
+/// where more percentiles would hide a localised field such as a pulse.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     low: f64,
@@ -13,10 +15,8 @@ pub struct Extent {
 
 /// Fewer values have no outliers.
 const FEW: usize = 1000;
-/// Share of the values beyond each end that may be outliers.
-const OUTLIERS: f64 = 1e-3;
-/// Outliers must widen the range by this factor to be excluded.
-const WIDER: f64 = 1.5;
+/// Shares of the values beyond each end that may be outliers, and the factors by which outliers widen the range.
+const OUTLIERS: [(f64, std::ops::Range<f64>); 2] = [(5e-3, 2.0..20.0), (1e-3, 1.5..f64::INFINITY)];
 /// Values below this share of the quantity are round-off.
 const ROUND_OFF: f64 = 1e-10;
 /// A field has both signs if the smaller side is at least this share of the larger one.
@@ -32,15 +32,16 @@ impl Extent {
                 (low.min(x), high.max(x))
             });
         if finite.len() >= FEW {
-            let skipped = (OUTLIERS * finite.len() as f64) as usize;
             let last = finite.len() - 1;
-            let (_, below, _) = finite.select_nth_unstable_by(skipped, f64::total_cmp);
-            let below = *below;
-            let (_, above, _) = finite.select_nth_unstable_by(last - skipped, f64::total_cmp);
-            let above = *above;
-            if above > below && high - low > WIDER * (above - below) {
-                (low, high) = (below, above);
-            }
+            let inner = OUTLIERS.into_iter().find_map(|(share, factors)| {
+                let skipped = (share * finite.len() as f64) as usize;
+                let mut nth = |k: usize| *finite.select_nth_unstable_by(k, f64::total_cmp).1;
+                let (below, above) = (nth(skipped), nth(last - skipped));
+                let is_outlying =
+                    above > below && factors.contains(&((high - low) / (above - below)));
+                is_outlying.then_some((below, above))
+            });
+            (low, high) = inner.unwrap_or((low, high));
         }
         let size = size.max(low.abs()).max(high.abs());
         Self {
@@ -104,6 +105,28 @@ mod tests {
         values[17] = 100.0;
         let [low, high] = Extent::of(&values, 0.0).ends();
         assert!((low - 0.001).abs() < 2e-4 && (high - 0.999).abs() < 2e-4);
+        // Half a per cent of large stresses at supports.
+        for value in &mut values[..40] {
+            *value = 10.0;
+        }
+        values[17] = 9.0;
+        let [low, high] = Extent::of(&values, 0.0).ends();
+        assert!(
+            (low - 0.009).abs() < 1e-3 && (high - 0.999).abs() < 2e-3,
+            "{low} {high}"
+        );
+        // A pulse in few points.
+        let pulse = (0..10_000).map(|k| {
+            if k < 40 {
+                f64::from(k)
+            } else {
+                1e-9 * f64::from(k % 7)
+            }
+        });
+        assert_eq!(
+            Extent::of(&pulse.collect::<Vec<f64>>(), 0.0).ends(),
+            [0.0, 39.0]
+        );
         // Few values are all shown.
         assert_eq!(Extent::of(&[1.0, 2.0, 50.0], 0.0).ends(), [1.0, 50.0]);
     }

@@ -54,7 +54,7 @@ pub struct FieldPicture<'a> {
     length_unit: &'static str,
     title: String,
     time: Option<f64>,
-    load_factor: Option<f64>,
+    progress: Option<(&'static str, f64)>,
     lines: Vec<Vec<[f64; 3]>>,
     rigid: Vec<[[f64; 3]; 3]>,
     outlines: Vec<Vec<[f64; 2]>>,
@@ -87,7 +87,7 @@ impl<'a> FieldPicture<'a> {
             length_unit: "m",
             title: String::new(),
             time: None,
-            load_factor: None,
+            progress: None,
             lines: Vec::new(),
             rigid: Vec::new(),
             outlines: Vec::new(),
@@ -139,9 +139,9 @@ impl<'a> FieldPicture<'a> {
         self
     }
 
-    /// Sets the load factor, shown in the upper right corner instead of the time.
-    pub fn load_factor(mut self, factor: f64) -> Self {
-        self.load_factor = Some(factor);
+    /// Sets a number with its name, such as the load factor, shown in the upper right corner instead of the time.
+    pub fn progress(mut self, name: &'static str, value: f64) -> Self {
+        self.progress = Some((name, value));
         self
     }
 
@@ -449,8 +449,8 @@ impl<'a> FieldPicture<'a> {
         if !self.style.titled {
             return String::new();
         }
-        match (self.load_factor, self.time) {
-            (Some(factor), _) => format!("load factor {}", significant(factor, 3)),
+        match (self.progress, self.time) {
+            (Some((name, value)), _) => format!("{name} {}", significant(value, 3)),
             (None, Some(time)) => format!("t = {}", quantity(time, "s")),
             (None, None) => String::new(),
         }

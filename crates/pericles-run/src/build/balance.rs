@@ -107,6 +107,7 @@ impl Part {
             place,
             force: is_some(force).then_some(force),
             moment: is_some(moment).then_some(moment * self.size),
+            units: cloud.body_units(),
         }
     }
 }

@@ -16,7 +16,7 @@ pub(super) fn add_impactors(
     simulation: &mut Simulation,
 ) -> Result<Vec<String>, RunError> {
     let output = &model.output;
-    let Some(signals) = impactor_signals(model, simulation.system().dimension()) else {
+    let Some(signals) = impactor_signals(model, simulation.system().cloud()) else {
         return Ok(Vec::new());
     };
     let impactors = signals.names.clone();

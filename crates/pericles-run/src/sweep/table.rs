@@ -10,19 +10,22 @@ use crate::json::write_rows;
 use crate::results::Results;
 use crate::units::significant;
 
-/// Columns of all runs with their JSON pointers in `run.json`.
+/// Columns of all runs with the names of their numbers in `run.json`.
 const NUMBERS: [(&str, &str); 10] = [
-    ("points", "/model/points"),
-    ("dt [s]", "/model/dt"),
-    ("time [s]", "/progress/t"),
-    ("kinetic_energy [J]", "/audit/kinetic_energy"),
-    ("elastic_energy [J]", "/audit/elastic_energy"),
-    ("dissipated_energy [J]", "/audit/dissipated_energy"),
-    ("external_work [J]", "/audit/external_work"),
-    ("energy_drift", "/audit/energy_drift"),
-    ("broken_bonds", "/audit/broken_bonds"),
-    ("largest_damage", "/audit/largest_damage"),
+    ("points", "model.points"),
+    ("dt", "model.dt"),
+    ("time", "progress.t"),
+    ("kinetic_energy", "audit.kinetic_energy"),
+    ("elastic_energy", "audit.elastic_energy"),
+    ("dissipated_energy", "audit.dissipated_energy"),
+    ("external_work", "audit.external_work"),
+    ("energy_drift", "audit.energy_drift"),
+    ("broken_bonds", "audit.broken_bonds"),
+    ("largest_damage", "audit.largest_damage"),
 ];
+
+/// Columns of [`NUMBERS`] in the summary of the program.
+const SHOWN: [&str; 3] = ["broken_bonds", "energy_drift", "elastic_energy"];
 
 /// The table of a sweep.
 pub struct Table {
@@ -58,7 +61,10 @@ impl Table {
         let mut header: Vec<String> = vec!["run".into()];
         header.extend(axes.iter().map(|axis| axis.key.clone()));
         header.push("status".into());
-        header.extend(NUMBERS.map(|(name, _)| name.to_owned()));
+        // Runs without results have no numbers.
+        let first = found.iter().flatten().next();
+        let unit = |number: &str| first.map_or(String::new(), |results| results.unit_of(number));
+        header.extend(NUMBERS.map(|(name, number)| with_unit(name, &unit(number))));
         header.extend(readings.iter().map(|name| (*name).to_owned()));
         let mut rows = vec![header];
         for ((member, results), probes) in members.iter().zip(&found).zip(&probes) {
@@ -70,11 +76,12 @@ impl Table {
                     .map_or("none", |results| results.text("/status"))
                     .to_owned(),
             );
-            let number = |pointer: &str| {
-                let value = results.as_ref()?.value(pointer)?;
+            let number = |name: &str| {
+                let pointer = format!("/{}", name.replace('.', "/"));
+                let value = results.as_ref()?.value(&pointer)?;
                 value.is_number().then(|| value.to_string())
             };
-            row.extend(NUMBERS.map(|(_, pointer)| number(pointer).unwrap_or_default()));
+            row.extend(NUMBERS.map(|(_, name)| number(name).unwrap_or_default()));
             row.extend(readings.iter().map(|name| {
                 let reading = probes.iter().find(|(probe, _)| probe == name);
                 reading.map_or(String::new(), |(_, x)| format!("{x:?}"))
@@ -113,9 +120,8 @@ impl Table {
             return Vec::new();
         };
         let wanted = (words - 1..words).chain((words..header.len()).filter(|&column| {
-            ["broken_bonds", "energy_drift", "elastic_energy [J]"]
-                .contains(&header[column].as_str())
-                || column >= words + NUMBERS.len()
+            let number = NUMBERS.get(column - words);
+            number.is_none_or(|(name, _)| SHOWN.contains(name))
         }));
         let columns: Vec<usize> = std::iter::once(0).chain(wanted).collect();
         let short = |row: usize, column: usize| -> String {
@@ -146,6 +152,14 @@ impl Table {
     }
 }
 
+/// Returns the header of a column.
+fn with_unit(name: &str, unit: &str) -> String {
+    match unit {
+        "" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
+    }
+}
+
 /// Returns the values of probes and derived quantities in the last row of their tables.
 fn last_readings(results: Option<&Results>) -> Vec<(String, f64)> {
     let mut readings = Vec::new();
@@ -156,11 +170,7 @@ fn last_readings(results: Option<&Results>) -> Vec<(String, f64)> {
         };
         let columns = table.columns.iter().zip(&table.values).skip(2);
         readings.extend(columns.filter_map(|(column, values)| {
-            let name = match column.unit() {
-                "" => column.name().to_owned(),
-                unit => format!("{} [{unit}]", column.name()),
-            };
-            Some((name, *values.last()?))
+            Some((with_unit(column.name(), column.unit()), *values.last()?))
         }));
     }
     readings

@@ -6,6 +6,7 @@ use super::set::{check_resolution, check_set};
 use super::{Lattice, Point, Region};
 use crate::domain::Domain;
 use crate::error::{PericlesError, Result, positive};
+use crate::units::BodyUnits;
 
 /// Point numbers in ascending order, in the order of the cloud.
 pub type PointSet = Vec<u32>;
@@ -351,6 +352,11 @@ impl PointCloud {
     /// Cross-section of a bar (m²), thickness of a plate (m), 1 in 3D.
     pub fn section(&self) -> f64 {
         self.section
+    }
+
+    /// Returns the units of quantities of the whole body, which are given per unit of a unit section.
+    pub fn body_units(&self) -> BodyUnits {
+        BodyUnits::of(self.dimension, self.section)
     }
 
     /// Distance of neighbouring points, m: the spacing of the lattice, or else the size of the mean cell.

@@ -399,6 +399,12 @@ impl System {
         self.divide_by_density(&PointSubset::All, out);
     }
 
+    /// Mass of the body, kg. All processes must call it together.
+    pub fn mass(&self) -> f64 {
+        let domain = self.cloud.domain();
+        domain.sum(self.points(), |i| self.mass_of(i))
+    }
+
     /// Mass of every unknown, kg, component-major.
     pub fn masses(&self) -> Vec<f64> {
         let n = self.points();

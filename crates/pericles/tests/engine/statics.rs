@@ -495,7 +495,7 @@ fn stop_conditions_end_static_and_dynamic_runs() {
         // The bar has just broken, in no earlier load step.
         assert!(run.system().operator().broken_bonds() > 0, "{reason}");
         match (&condition, reason.found.clone()) {
-            (StopCondition::ReactionBelow { .. }, Found::Reaction { now, peak }) => {
+            (StopCondition::ReactionBelow { .. }, Found::Reaction { now, peak, .. }) => {
                 assert!(now < 0.02 * peak, "{reason}");
                 // At most the strength of the soft part; bonds of the fixed layer are stretched more than the mean
                 // and break earlier.
