@@ -1,5 +1,7 @@
 //! Vectors and matrices of three dimensions.
 
+pub(crate) use pericles::vector::{cross, dot, minus, norm, plus, scaled};
+
 /// A vector.
 pub(crate) type V3 = [f64; 3];
 /// A matrix by rows.
@@ -7,46 +9,6 @@ pub(crate) type M3 = [[f64; 3]; 3];
 
 /// The unit matrix.
 pub(crate) const UNIT: M3 = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-
-/// a·b
-#[inline]
-pub(crate) fn dot(a: V3, b: V3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// |a|
-#[inline]
-pub(crate) fn norm(a: V3) -> f64 {
-    dot(a, a).sqrt()
-}
-
-/// a × b
-#[inline]
-pub(crate) fn cross(a: V3, b: V3) -> V3 {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-/// a − b
-#[inline]
-pub(crate) fn minus(a: V3, b: V3) -> V3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// a + factor b
-#[inline]
-pub(crate) fn plus(a: V3, factor: f64, b: V3) -> V3 {
-    std::array::from_fn(|c| a[c] + factor * b[c])
-}
-
-/// factor a
-#[inline]
-pub(crate) fn scaled(factor: f64, a: V3) -> V3 {
-    a.map(|x| factor * x)
-}
 
 /// M a
 #[inline]

@@ -1,5 +1,6 @@
 //! Quantities measured on a moving surface.
 
+use pericles::vector::{cross, minus, norm};
 use std::sync::Arc;
 
 use crate::surface::Surface;
@@ -189,17 +190,7 @@ fn find(root: &mut [u32], mut i: u32) -> u32 {
 }
 
 fn normal([a, b, c]: [Point; 3]) -> Point {
-    let u: Point = std::array::from_fn(|k| b[k] - a[k]);
-    let v: Point = std::array::from_fn(|k| c[k] - a[k]);
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
-}
-
-fn norm(a: Point) -> f64 {
-    (a[0] * a[0] + a[1] * a[1] + a[2] * a[2]).sqrt()
+    cross(minus(b, a), minus(c, a))
 }
 
 /// Margin of the energy estimate √E(0) + ∫ ‖b‖ ds/√(2ρ) − √E(t), J^½, with ‖b‖² = Σ A |b|² and ρ the lowest

@@ -2,6 +2,7 @@
 
 use pericles::Simulation;
 use pericles::observe::{Field, Snapshot};
+use pericles::vector::cross;
 use serde::Serialize;
 
 /// Residual and resultants of the last static state.
@@ -36,7 +37,11 @@ impl StaticBalance {
         let domain = simulation.system().domain();
         let n = arms.len();
         let total = |of: &(dyn Fn(usize) -> f64 + Sync)| domain.sum(n, of);
-        let moments: Vec<[f64; 3]> = arms.iter().zip(&forces).map(|(x, f)| cross(x, f)).collect();
+        let moments: Vec<[f64; 3]> = arms
+            .iter()
+            .zip(&forces)
+            .map(|(x, f)| cross(*x, *f))
+            .collect();
         let force = std::array::from_fn(|c| total(&|i| forces[i][c]));
         let moment = std::array::from_fn(|c| total(&|i| moments[i][c]));
         let relative = |resultant: &[f64; 3], sum: f64| match sum {
@@ -104,14 +109,6 @@ fn unbalanced(snapshot: &Snapshot<'_>) -> f64 {
     let entries = system.dimension() * n;
     let square = |k: usize| (volumes[k % n] * (forces[k] + reactions[k])).powi(2);
     system.domain().sum(entries, square).sqrt()
-}
-
-fn cross(a: &[f64; 3], b: &[f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 fn size(vector: &[f64; 3]) -> f64 {

@@ -1,7 +1,7 @@
 //! The time of a run as it is shown: static states have a load factor or a load step instead.
 
 use crate::results::Results;
-use crate::units::{quantity, significant};
+use crate::units::{number_of, quantity};
 use pericles_io::Axis;
 
 /// Name, unit and scale of the time of a run.
@@ -72,7 +72,7 @@ impl TimeAxis {
     /// Returns the end of an axis as text: `40.0 µs`, `load factor 0.5`.
     pub fn label(&self, value: f64) -> String {
         match self.unit {
-            "" => format!("{} {}", self.name, significant(value, 3)),
+            "" => format!("{} {}", self.name, number_of(value)),
             unit => quantity(value, unit),
         }
     }

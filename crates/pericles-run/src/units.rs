@@ -42,7 +42,7 @@ pub fn percent(ratio: f64) -> String {
     format!("{} %", significant(100.0 * ratio, 2))
 }
 
-pub use pericles::units::{count, quantity, significant, unit_per};
+pub use pericles::units::{count, number_of, quantity, significant, unit_per};
 
 /// Returns the SI unit of a number of `run.json` by the last part of its name; empty for ratios and counts.
 ///

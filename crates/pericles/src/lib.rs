@@ -193,6 +193,7 @@ mod system;
 mod thermal;
 pub mod time;
 pub mod units;
+pub mod vector;
 
 pub use accounts::Ledger;
 pub use archive::{Archive, Checkpointed, Values};

@@ -165,6 +165,15 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
+/// Formats a number of units, such as load steps: whole numbers without decimals, others with three digits.
+pub fn number_of(value: f64) -> String {
+    let whole = value.round();
+    match (value - whole).abs() < 1e-6 * value.abs() {
+        true => format!("{whole}"),
+        false => significant(value, 3),
+    }
+}
+
 /// Formats a large count in groups of three digits: `1 234 567`.
 pub fn count(number: u64) -> String {
     let digits = number.to_string();

@@ -1,5 +1,6 @@
 //! Lines on pictures that move with the body: pre-cracks, interfaces of materials, borders of refined parts.
 
+use pericles::vector::cross;
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 
@@ -113,14 +114,6 @@ fn crack_lines(cloud: &PointCloud, crack: &Crack) -> Vec<Vec<Carried>> {
         }
         Crack::Section { .. } | Crack::Triangles { .. } | Crack::Layer { .. } => Vec::new(),
     }
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 /// Returns a normal of a plane polygon, of any length.

@@ -1,5 +1,6 @@
 //! A field along a straight line.
 
+use pericles::vector::norm;
 use std::path::PathBuf;
 
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
@@ -134,10 +135,6 @@ fn stations(cloud: &PointCloud, [from, to]: [Point; 2]) -> Vec<Station> {
         }
     }
     stations
-}
-
-fn norm(x: Point) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 impl Observer for Profile {

@@ -15,7 +15,7 @@ use super::surface::facets;
 use super::write::write;
 use super::{plane, solid};
 use crate::IoError;
-use pericles::units::{Shown, quantity, significant};
+use pericles::units::{Shown, number_of, quantity};
 
 /// Edge lengths of the cells of the points, m.
 #[derive(Debug, Clone, Copy)]
@@ -450,7 +450,7 @@ impl<'a> FieldPicture<'a> {
             return String::new();
         }
         match (self.progress, self.time) {
-            (Some((name, value)), _) => format!("{name} {}", significant(value, 3)),
+            (Some((name, value)), _) => format!("{name} {}", number_of(value)),
             (None, Some(time)) => format!("t = {}", quantity(time, "s")),
             (None, None) => String::new(),
         }

@@ -2,8 +2,9 @@
 
 use super::bitmap::Rgb;
 use super::colour::shaded;
-use super::projection::{View, dot};
+use super::projection::View;
 use super::raster::{Rank, Raster};
+use pericles::vector::{cross, dot, minus};
 
 /// A triangle or quadrilateral with the value of a point: a cell of a plane body, or a face of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,13 +101,7 @@ fn heights([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
 
 /// Returns the normal of a polygon, by its diagonals.
 fn normal([a, b, c, d]: [[f64; 3]; 4]) -> [f64; 3] {
-    let u: [f64; 3] = std::array::from_fn(|k| c[k] - a[k]);
-    let v: [f64; 3] = std::array::from_fn(|k| d[k] - b[k]);
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
+    cross(minus(c, a), minus(d, b))
 }
 
 fn longest_side(corners: [[f64; 3]; 4]) -> f64 {

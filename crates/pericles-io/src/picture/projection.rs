@@ -1,6 +1,7 @@
 //! Parallel projection of solids: screen axes, pixels and light.
 
 use pericles::sum::max_norm;
+use pericles::vector::{cross, dot};
 
 /// Unit vectors of the screen: to the right, upwards, and towards the viewer.
 #[derive(Debug, Clone, Copy)]
@@ -89,18 +90,6 @@ impl Placing {
             -near,
         ]
     }
-}
-
-pub(super) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 fn normalised(v: [f64; 3]) -> [f64; 3] {

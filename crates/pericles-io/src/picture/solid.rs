@@ -6,12 +6,13 @@ use super::colour::shaded;
 use super::drawing::{Drawing, Spot};
 use super::frame::{Area, ColourBar, Sizes};
 use super::polygon;
-use super::projection::{Placing, View, cross, dot};
+use super::projection::{Placing, View};
 use super::raster::{Rank, Raster};
 use super::scene::{Facet, Scene};
 use super::text::{Align, Style};
 use super::ticks::{Ticks, round_below};
 use pericles::units::quantity;
+use pericles::vector::{cross, dot};
 
 const MARGIN: f64 = 0.03;
 const FLATTEST: f64 = 0.2;

@@ -1,6 +1,7 @@
 //! Shaded triangles of a surface whose vertices are the points.
 
 use super::scene::Facet;
+use pericles::vector::{cross, minus};
 
 /// Returns the triangles with finite corners. Values are not interpolated if they are identification numbers.
 pub(super) fn facets(
@@ -37,11 +38,5 @@ pub(super) fn facets(
 
 /// Returns the normal of a triangle, as long as twice its area.
 fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    let u: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
-    let v: [f64; 3] = std::array::from_fn(|k| c[k] - a[k]);
-    [
-        u[1] * v[2] - u[2] * v[1],
-        u[2] * v[0] - u[0] * v[2],
-        u[0] * v[1] - u[1] * v[0],
-    ]
+    cross(minus(b, a), minus(c, a))
 }

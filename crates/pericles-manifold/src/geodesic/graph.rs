@@ -1,11 +1,12 @@
 //! Shortest paths in a graph whose nodes lie on a surface.
 
+use pericles::vector::{minus, norm};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::GeodesicPairs;
 use super::unfolding::panel;
-use crate::surface::{HalfEdges, Surface, difference, norm};
+use crate::surface::{HalfEdges, Surface};
 use pericles::space::Point;
 
 /// Weighted graph in compressed rows. The first nodes are the vertices of the surface.
@@ -82,11 +83,7 @@ impl Graph {
         let mut first = vec![0; half_edges.len()];
         let mut links = Vec::new();
         let between = |places: &[Point], a: u32, b: u32| {
-            (
-                a,
-                b,
-                norm(difference(places[a as usize], places[b as usize])),
-            )
+            (a, b, norm(minus(places[a as usize], places[b as usize])))
         };
         for h in half_edges.edges() {
             let (a, b) = (half_edges.origin(h), half_edges.target(h));

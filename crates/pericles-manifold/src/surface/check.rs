@@ -3,6 +3,7 @@
 use super::half_edges::{origins, sorted_by_edge};
 use super::weld::same_places;
 use super::{HalfEdges, Surface, SurfaceError};
+use pericles::vector::{cross, dot};
 
 /// Smallest allowed triangle area as a fraction of the square of the surface's largest side.
 const SMALLEST_AREA: f64 = 1e-12;
@@ -255,7 +256,7 @@ impl Surface {
         let mut volumes = vec![0.0; count];
         for (triangle, &part) in self.triangles.iter().zip(part) {
             let [a, b, c] = self.corners(*triangle);
-            volumes[part as usize] += super::dot(a, super::cross(b, c)) / 6.0;
+            volumes[part as usize] += dot(a, cross(b, c)) / 6.0;
         }
         volumes
     }

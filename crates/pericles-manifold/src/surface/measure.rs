@@ -1,8 +1,9 @@
 //! Areas, volumes, angles and cotangent weights.
 
-use super::{HalfEdges, Surface, cross, difference, dot, norm};
+use super::{HalfEdges, Surface};
 use pericles::Result;
 use pericles::space::{Point, PointCloud};
+use pericles::vector::{cross, dot, minus, norm};
 
 /// Rule that distributes the area of triangles to their corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -92,7 +93,7 @@ impl Surface {
 
     /// Straight distance of two vertices, m.
     pub fn chord(&self, a: usize, b: usize) -> f64 {
-        norm(difference(self.positions[a], self.positions[b]))
+        norm(minus(self.positions[a], self.positions[b]))
     }
 
     /// Median edge length, m.
@@ -168,13 +169,13 @@ impl Surface {
 
 /// Twice the area times the outward normal.
 pub(crate) fn normal([a, b, c]: [Point; 3]) -> Point {
-    cross(difference(b, a), difference(c, a))
+    cross(minus(b, a), minus(c, a))
 }
 
 fn corner_angles(corners: [Point; 3]) -> [f64; 3] {
     let twice_area = norm(normal(corners));
     std::array::from_fn(|k| {
-        let to = |m: usize| difference(corners[(k + m) % 3], corners[k]);
+        let to = |m: usize| minus(corners[(k + m) % 3], corners[k]);
         twice_area.atan2(dot(to(1), to(2)))
     })
 }
@@ -182,7 +183,7 @@ fn corner_angles(corners: [Point; 3]) -> [f64; 3] {
 fn corner_cotangents(corners: [Point; 3]) -> [f64; 3] {
     let twice_area = norm(normal(corners));
     std::array::from_fn(|k| {
-        let to = |m: usize| difference(corners[(k + m) % 3], corners[k]);
+        let to = |m: usize| minus(corners[(k + m) % 3], corners[k]);
         dot(to(1), to(2)) / twice_area
     })
 }
@@ -194,7 +195,7 @@ fn voronoi_shares(corners: [Point; 3]) -> [f64; 3] {
         return std::array::from_fn(|k| if k == obtuse { 0.5 * area } else { 0.25 * area });
     }
     let square = |a: usize, b: usize| {
-        let side = difference(corners[a], corners[b]);
+        let side = minus(corners[a], corners[b]);
         dot(side, side)
     };
     std::array::from_fn(|k| {

@@ -133,23 +133,3 @@ impl Surface {
         triangle.map(|vertex| self.positions[vertex as usize])
     }
 }
-
-pub(crate) fn difference(a: Point, b: Point) -> Point {
-    std::array::from_fn(|c| a[c] - b[c])
-}
-
-pub(crate) fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(crate) fn cross(a: Point, b: Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
-}
-
-pub(crate) fn norm(a: Point) -> f64 {
-    dot(a, a).sqrt()
-}

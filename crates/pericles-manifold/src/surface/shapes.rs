@@ -1,9 +1,10 @@
 //! Surfaces defined by formulas.
 
+use pericles::vector::{cross, dot, minus, norm};
 use std::collections::HashMap;
 use std::f64::consts::PI;
 
-use super::{Surface, SurfaceError, cross, difference, dot, norm};
+use super::{Surface, SurfaceError};
 use pericles::space::Point;
 
 /// Finest icosphere: 10 · 4^10 + 2 ≈ ten million vertices.
@@ -163,13 +164,13 @@ fn icosahedron() -> (Vec<Point>, Vec<[u32; 3]>) {
         }
     }
     // Neighbouring corners are 2 apart, the next nearest more than 3.
-    let joined = |a: usize, b: usize| norm(difference(corners[a], corners[b])) < 2.5;
+    let joined = |a: usize, b: usize| norm(minus(corners[a], corners[b])) < 2.5;
     let mut triangles = Vec::new();
     for a in 0..12 {
         for b in a + 1..12 {
             for c in b + 1..12 {
                 if joined(a, b) && joined(b, c) && joined(c, a) {
-                    let side = |k: usize| difference(corners[k], corners[a]);
+                    let side = |k: usize| minus(corners[k], corners[a]);
                     let outward = dot(cross(side(b), side(c)), corners[a]) > 0.0;
                     let [b, c] = if outward { [b, c] } else { [c, b] };
                     triangles.push([a as u32, b as u32, c as u32]);

@@ -1,8 +1,9 @@
 //! Welding and removal of vertices.
 
+use pericles::vector::{minus, norm};
 use std::collections::HashMap;
 
-use super::{Surface, SurfaceError, difference, norm};
+use super::{Surface, SurfaceError};
 use pericles::space::Point;
 
 impl Surface {
@@ -76,7 +77,7 @@ pub(super) fn same_places(positions: &[Point], tolerance: f64) -> Vec<u32> {
                 at[2] + f64::from(k / 9 - 1),
             ];
             for &other in cells.get(&key(near)).into_iter().flatten() {
-                let apart = norm(difference(*x, positions[other as usize]));
+                let apart = norm(minus(*x, positions[other as usize]));
                 if apart <= tolerance {
                     found = found.min(other);
                 }

@@ -1,5 +1,6 @@
 //! Thin parts of bodies: sides of few horizons, and layers that bonds bridge.
 
+use pericles::vector::norm;
 use std::collections::HashMap;
 
 use pericles::material::{ElasticConstants, StressState, SurfaceCorrection};
@@ -185,8 +186,4 @@ fn bridged(cloud: &PointCloud, of_point: &[u8], reach: f64) -> Vec<f64> {
             found as f64 / sample.len().max(1) as f64
         })
         .collect()
-}
-
-fn norm(x: [f64; 3]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
 }

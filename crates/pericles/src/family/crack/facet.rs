@@ -3,6 +3,7 @@
 use super::EndRule;
 use crate::error::{PericlesError, Result};
 use crate::space::Point;
+use crate::vector::{cross, dot, minus, norm, scaled};
 
 /// A coordinate system with two axes in the crack plane.
 #[derive(Debug, Clone)]
@@ -21,7 +22,7 @@ impl Frame {
                 reason: "its normal must be a finite vector other than zero",
             });
         }
-        let normal = scaled(normal, 1.0 / length);
+        let normal = scaled(1.0 / length, normal);
         let least = (0..3).fold(0, |best, c| {
             if normal[c].abs() < normal[best].abs() {
                 c
@@ -32,7 +33,7 @@ impl Frame {
         let mut axis = [0.0; 3];
         axis[least] = 1.0;
         let along = cross(normal, axis);
-        let along = scaled(along, 1.0 / norm(along));
+        let along = scaled(1.0 / norm(along), along);
         Ok(Self {
             origin,
             normal,
@@ -51,8 +52,8 @@ impl Frame {
         let mut normal = [0.0; 3];
         for k in 0..corners.len() {
             let (a, b) = (
-                sub(corners[k], first),
-                sub(corners[(k + 1) % corners.len()], first),
+                minus(corners[k], first),
+                minus(corners[(k + 1) % corners.len()], first),
             );
             let part = cross(a, b);
             for c in 0..3 {
@@ -61,7 +62,7 @@ impl Frame {
         }
         let size = corners
             .iter()
-            .map(|&p| norm(sub(p, first)))
+            .map(|&p| norm(minus(p, first)))
             .fold(0.0, f64::max);
         let spans_area = norm(normal) > 1e-12 * size * size;
         if corners.len() < 3 || !spans_area {
@@ -73,11 +74,11 @@ impl Frame {
     }
 
     pub(super) fn height(&self, p: Point) -> f64 {
-        dot(sub(p, self.origin), self.normal)
+        dot(minus(p, self.origin), self.normal)
     }
 
     pub(super) fn place(&self, p: Point) -> [f64; 2] {
-        let from = sub(p, self.origin);
+        let from = minus(p, self.origin);
         [dot(from, self.along), dot(from, self.across)]
     }
 }
@@ -200,28 +201,4 @@ fn segments_cross(p: [f64; 2], q: [f64; 2], a: [f64; 2], b: [f64; 2]) -> bool {
         (s[0] - o[0]) * (t[1] - o[1]) - (s[1] - o[1]) * (t[0] - o[0])
     };
     side(p, q, a) * side(p, q, b) < 0.0 && side(a, b, p) * side(a, b, q) < 0.0
-}
-
-pub(super) fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn norm(a: Point) -> f64 {
-    dot(a, a).sqrt()
-}
-
-pub(super) fn scaled(a: Point, factor: f64) -> Point {
-    [a[0] * factor, a[1] * factor, a[2] * factor]
-}
-
-fn cross(a: Point, b: Point) -> Point {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }

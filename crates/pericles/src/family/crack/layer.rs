@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use super::facet::{norm, scaled, sub};
 use crate::space::Point;
+use crate::vector::{minus, norm, scaled};
 
 /// The cubic cells around the points of a layer.
 #[derive(Debug, Clone)]
@@ -68,10 +68,10 @@ impl LayerCells {
         }
         // Both ends of a bond examine the same places.
         let (from, to) = if p <= q { (p, q) } else { (q, p) };
-        let along = sub(to, from);
+        let along = minus(to, from);
         let parts = (4.0 * norm(along) / self.spacing).ceil().max(1.0);
         (0..parts as usize).any(|k| {
-            let step = scaled(along, (k as f64 + 0.5) / parts);
+            let step = scaled((k as f64 + 0.5) / parts, along);
             let place = std::array::from_fn(|c| from[c] + step[c]);
             self.contains(place, HALF * self.spacing)
         })
@@ -81,7 +81,7 @@ impl LayerCells {
     pub(super) fn distance(&self, place: Point) -> f64 {
         let points = self.cells.values().flatten();
         points
-            .map(|&point| norm(sub(place, point)))
+            .map(|&point| norm(minus(place, point)))
             .fold(f64::INFINITY, f64::min)
     }
 }

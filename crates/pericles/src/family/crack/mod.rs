@@ -6,8 +6,9 @@ mod layer;
 
 use crate::error::{PericlesError, Result};
 use crate::space::{Point, Sites};
+use crate::vector::{minus, norm, scaled};
 
-use facet::{Facet, Frame, Outline, norm, scaled, sub};
+use facet::{Facet, Frame, Outline};
 use grid::FacetGrid;
 use layer::LayerCells;
 
@@ -153,7 +154,7 @@ impl Crack {
                         reason: "its two ends must be finite and distinct",
                     });
                 }
-                let along = scaled(along, 1.0 / length);
+                let along = scaled(1.0 / length, along);
                 return Ok(Facet {
                     frame: Frame {
                         origin: [from[0], from[1], 0.0],
@@ -170,7 +171,7 @@ impl Crack {
                 let frame = Frame::through(corners)?;
                 let flat = corners.iter().all(|&corner| {
                     frame.height(corner).abs()
-                        <= tolerance.max(1e-9 * norm(sub(corner, corners[0])))
+                        <= tolerance.max(1e-9 * norm(minus(corner, corners[0])))
                 });
                 if !flat {
                     return Err(PericlesError::BadCrack {

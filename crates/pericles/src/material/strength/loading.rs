@@ -2,6 +2,7 @@
 
 use super::fan::{Tensor, normalised};
 use super::path::Loading;
+use crate::vector::cross;
 
 /// Returns a ⊗ b.
 fn product(a: [f64; 3], b: [f64; 3]) -> Tensor {
@@ -93,11 +94,4 @@ pub(super) fn shear(dimension: usize) -> Loading {
         driven: sum(axis(0), -1.0, axis(1)),
         free,
     }
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    std::array::from_fn(|c| {
-        let (p, q) = ((c + 1) % 3, (c + 2) % 3);
-        a[p] * b[q] - a[q] * b[p]
-    })
 }

@@ -5,6 +5,7 @@ use crate::error::Result;
 use crate::family::BondList;
 use crate::parallel::for_each_point;
 use crate::units::quantity;
+use crate::vector::{cross, dot};
 
 /// The matrix T of u_g = Σ_j T_gj u_j for each component: u_g = u_p + H_p (x_g − x_p), with the point p of
 /// the body nearest to the ghost g and the displacement gradient H_p = (Σ_j V_j (u_j − u_p) ⊗ ξ) (Σ_j V_j
@@ -184,18 +185,6 @@ impl Geometry<'_> {
             }
         }
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }
 
 /// Returns the solution of a symmetric system of three equations and its determinant; `None` if that is zero.
