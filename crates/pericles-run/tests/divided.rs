@@ -360,38 +360,43 @@ fn schemes_have_the_files_of_one_process() {
 }
 
 /// The block is torn apart quasi-statically.
-const OPEN: &str = "displacement = [0, 0.2, 0]\n[[constraint]]\nset = \"bottom\"\ndisplacement = [0, 0, 0]\n[time]\nscheme = \"static\"\nload_steps = 4\n";
+const OPEN: &str = "displacement = [0, 0.15, 0]\n[[constraint]]\nset = \"bottom\"\ndisplacement = [0, 0, 0]\n[time]\nscheme = \"static\"\nload_steps = 3\n";
 
 #[test]
 fn static_states_have_the_files_of_one_process() {
     let place = tempfile::tempdir().unwrap();
-    for (k, (material, breaking)) in [
-        (BONDS, "worst-first"),
-        (BONDS, "event"),
-        (SOLID, "worst-first"),
+    // Each number of processes, and each change of it, occurs with one material and breaking.
+    for (k, (material, breaking, sizes, [before, after])) in [
+        (BONDS, "worst-first", &[2, 4][..], [3, 2]),
+        (BONDS, "event", &[3], [1, 4]),
+        (SOLID, "worst-first", &[3], [3, 2]),
     ]
     .into_iter()
     .enumerate()
     {
         println!("{material}\n{breaking}");
         let deck = block(material, &format!("{OPEN}breaking = \"{breaking}\""));
-        check(&deck, &[2, 3, 4]);
         let alone = place.path().join(format!("alone-{k}"));
         run(&deck, &alone, Arc::new(Alone), None).unwrap();
-        for (before, after) in [(3, 2), (1, 4)] {
-            let folder = place.path().join(format!("{before}-{after}-{k}"));
-            for ending in Threads::run(before, |comm| run(&deck, &folder, comm, Some(2))) {
-                assert_eq!(ending.unwrap(), Ending::Cancelled);
-            }
-            for ending in Threads::run(after, |comm| resume(&folder, comm)) {
+        for &size in sizes {
+            let folder = place.path().join(format!("{size}-{k}"));
+            for ending in Threads::run(size, |comm| run(&deck, &folder, comm, None)) {
                 assert_eq!(ending.unwrap(), Ending::Finished);
             }
-            assert_same(
-                &folder,
-                &alone,
-                &format!("{before}, then {after} processes"),
-            );
+            assert_same(&folder, &alone, &format!("{size} processes"));
         }
+        let folder = place.path().join(format!("{before}-{after}-{k}"));
+        for ending in Threads::run(before, |comm| run(&deck, &folder, comm, Some(2))) {
+            assert_eq!(ending.unwrap(), Ending::Cancelled);
+        }
+        for ending in Threads::run(after, |comm| resume(&folder, comm)) {
+            assert_eq!(ending.unwrap(), Ending::Finished);
+        }
+        assert_same(
+            &folder,
+            &alone,
+            &format!("{before}, then {after} processes"),
+        );
     }
 }
 
