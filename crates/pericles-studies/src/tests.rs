@@ -92,9 +92,16 @@ fn contact_studies_are_within_tolerance() {
     hold_all_of(&contact::TOPIC);
 }
 
+/// Runs every study but `thermal-shock`, which takes a minute.
 #[test]
 fn heat_studies_are_within_tolerance() {
-    hold_all_of(&heat::TOPIC);
+    hold(&[
+        "heat/slabs",
+        "heat/plane-waves",
+        "heat/balance",
+        "heat/expansion",
+        "heat/bimaterial-strip",
+    ]);
 }
 
 /// The notched plate takes a minute.

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
-use super::bitmap::encoding;
+use super::bitmap::{COMPRESSION, encoding};
 use crate::{IoError, write_atomically};
 
 /// Frames per second.
@@ -78,6 +78,7 @@ pub fn write_animation(stills: &[PathBuf], path: impl AsRef<Path>) -> Result<(),
         let mut encoder = png::Encoder::new(out, size[0] as u32, size[1] as u32);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
+        encoder.set_deflate_compression(COMPRESSION);
         encoder
             .set_animated(stills.len() as u32, 0)
             .map_err(encoding)?;

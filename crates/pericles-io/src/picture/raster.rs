@@ -162,13 +162,18 @@ impl Raster {
         if self.hides(&columns, &rows, nearest as f32) {
             return;
         }
-        #[cfg(test)]
-        {
-            self.visited += columns.len() * rows.len();
-        }
+        // Change of each share from one pixel to the next.
+        let slopes = [(b, c), (c, a), (a, b)].map(|(p, q)| (p[1] - q[1]) / doubled);
         for j in rows {
             let y = j as f64 + 0.5;
-            for i in columns.clone() {
+            let at_zero = [(b, c), (c, a), (a, b)]
+                .map(|(p, q)| (p[0] * (q[1] - y) - q[0] * (p[1] - y)) / doubled);
+            let columns = inside(&columns, at_zero, slopes, slack);
+            #[cfg(test)]
+            {
+                self.visited += columns.len();
+            }
+            for i in columns {
                 let x = i as f64 + 0.5;
                 let area = |p: [f64; 3], q: [f64; 3]| {
                     ((p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)) / doubled
@@ -247,6 +252,29 @@ impl Raster {
             }
         }
     }
+}
+
+/// Returns the columns in which all shares of a row may be at least −slack: one more on each side, for rounding. `at_zero` are
+/// the shares at x = 0.
+fn inside(
+    columns: &Range<usize>,
+    at_zero: [f64; 3],
+    slopes: [f64; 3],
+    slack: [f64; 3],
+) -> Range<usize> {
+    let (mut low, mut high) = (columns.start as f64, columns.end as f64);
+    for k in 0..3 {
+        // at_zero + slope x ≥ −slack
+        let bound = (-slack[k] - at_zero[k]) / slopes[k];
+        match slopes[k] {
+            up if up > 0.0 => low = low.max(bound - 1.5),
+            down if down < 0.0 => high = high.min(bound + 1.5),
+            _ => {}
+        }
+    }
+    // A bound that is not a number is no bound; casting a negative number gives zero.
+    let (first, end) = (low.ceil() as usize, high.ceil().max(0.0) as usize);
+    first.max(columns.start)..end.min(columns.end)
 }
 
 #[cfg(test)]
