@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 
 use self::curve::{Measured, Sampled};
 use self::least_squares::{Control, Kind, Range, minimise};
-pub use self::outcome::Outcome;
+pub use self::outcome::{FittedValue, Outcome};
 use self::parameter::Parameter;
 pub use self::parameter::Wanted;
 use crate::cancel::Cancel;
