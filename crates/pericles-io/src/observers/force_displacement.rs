@@ -1,11 +1,9 @@
 //! Force–displacement curve of static states.
 
-use std::path::PathBuf;
-
 use pericles::System;
 use pericles::observe::{ObserveError, Observer, Snapshot};
 
-use super::table::{AXES, ObserverTable, step_and_time, whole};
+use super::table::{AXES, ObserverTable, TableTarget, step_and_time, whole};
 use crate::csv::{Cell, Column, read_csv};
 use crate::error::IoError;
 use crate::picture::{Axis, Curve, LineChart};
@@ -18,8 +16,6 @@ use crate::picture::{Axis, Curve, LineChart};
 /// if a scheme scales the prescribed values. The chart shows the motions whose displacement changes.
 pub struct ForceDisplacement {
     table: ObserverTable,
-    path: PathBuf,
-    chart: PathBuf,
     title: String,
     pairs: Vec<Pair>,
 }
@@ -43,15 +39,13 @@ enum Acting {
 
 impl ForceDisplacement {
     /// Creates the observer for a system; `loaded` are the names of the sets on which its loads act, in the order of
-    /// the loads, and `table` and `chart` are file paths.
+    /// the loads. The chart is drawn beside a table in a file, with the ending `png`.
     pub fn new(
-        table: impl Into<PathBuf>,
-        chart: impl Into<PathBuf>,
+        table: impl Into<TableTarget>,
         title: impl Into<String>,
         system: &System,
         loaded: &[String],
     ) -> Self {
-        let path = table.into();
         let pairs = pairs(system, loaded);
         let mut columns = step_and_time();
         for pair in &pairs {
@@ -60,9 +54,7 @@ impl ForceDisplacement {
             columns.push(Column::real(force, "N"));
         }
         Self {
-            table: ObserverTable::new(path.clone(), "observer/force_displacement", columns),
-            path,
-            chart: chart.into(),
+            table: ObserverTable::new(table.into(), "observer/force_displacement", columns),
             title: title.into(),
             pairs,
         }
@@ -70,10 +62,10 @@ impl ForceDisplacement {
 
     /// Draws the chart from the table.
     fn draw(&self) -> Result<(), IoError> {
-        if !self.table.is_open() {
+        let Some(path) = self.table.written() else {
             return Ok(());
-        }
-        let table = read_csv(&self.path)?;
+        };
+        let table = read_csv(path)?;
         let column = |name: &str| table.column(name).unwrap_or_default();
         let axes = (Axis::new("displacement", "m"), Axis::new("force", "N"));
         let mut chart = LineChart::new(axes.0, axes.1).title(&self.title);
@@ -90,7 +82,7 @@ impl ForceDisplacement {
         }
         match curves {
             0 => Ok(()),
-            _ => chart.write(&self.chart),
+            _ => chart.write(path.with_extension("png")),
         }
     }
 }
@@ -163,6 +155,6 @@ impl Observer for ForceDisplacement {
 pericles::saved! {
     impl Checkpointed for ForceDisplacement {
         table: part,
-        path, chart, title, pairs: fixed,
+        title, pairs: fixed,
     }
 }

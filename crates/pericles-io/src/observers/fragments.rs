@@ -1,10 +1,8 @@
 //! Fragments over time.
 
-use std::path::PathBuf;
-
 use pericles::observe::{Fragments, ObserveError, Observer, Snapshot};
 
-use super::table::{ObserverTable, step_and_time, whole};
+use super::table::{ObserverTable, TableTarget, step_and_time, whole};
 use crate::csv::Column;
 
 /// Fragments, the pieces connected by intact bonds: `fragments.csv`.
@@ -19,7 +17,7 @@ pub struct FragmentCourse {
 impl FragmentCourse {
     /// Creates the observer; a piece with at least the fraction `smallest` of the body's mass counts as a
     /// fragment.
-    pub fn new(path: impl Into<PathBuf>, smallest: f64) -> Self {
+    pub fn new(table: impl Into<TableTarget>, smallest: f64) -> Self {
         let mut columns = step_and_time();
         columns.push(Column::integer("fragments"));
         columns.push(Column::real("largest_mass", "kg"));
@@ -28,7 +26,7 @@ impl FragmentCourse {
         columns.push(Column::integer("single_points"));
         columns.push(Column::real("single_mass", "kg"));
         Self {
-            table: ObserverTable::new(path.into(), "observer/fragments", columns),
+            table: ObserverTable::new(table.into(), "observer/fragments", columns),
             smallest,
         }
     }
