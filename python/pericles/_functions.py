@@ -187,7 +187,17 @@ def check(deck: DeckLike, *, set: Changes | None = None) -> Check:
     deck = as_deck(deck, set)
     deck._core()
     with _file(deck) as arguments:
-        return Check(call("check", *arguments))
+        found = call("check", *arguments)
+        return Check(_renamed(found, arguments[0], deck.name))
+
+
+def _renamed(value: Any, file: str, name: str) -> Any:
+    """Return results in which the name of a deck replaces its temporary file."""
+    if isinstance(value, dict):
+        return {key: _renamed(entry, file, name) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_renamed(entry, file, name) for entry in value]
+    return value.replace(file, name) if isinstance(value, str) else value
 
 
 def modes(deck: DeckLike, *, count: int = 12, prestress: bool = False, set: Changes | None = None) -> Modes:

@@ -440,7 +440,7 @@ class Model:
         force : bool
             Replace results in the folder.
         keep : sequence of str
-            The fields that a simulation in memory keeps.
+            The fields that a simulation in memory keeps, besides its tables.
         every, time, count : int or float, optional
             When they are kept: every given number of steps, each given time (s), or the given number of times. By default
             100 times.

@@ -232,7 +232,11 @@ class Result:
         try:
             result._report = json.loads(path.read_text(encoding="utf-8"))
         except FileNotFoundError:
-            raise OutputError(f"{folder} is not the output folder of a run: it has no run.json") from None
+            if (result._folder / "fit.json").exists():
+                found = f"{folder} is the folder of a fit: its results are fit.csv and curve.csv; open one of its runs, such as run-0001"
+            else:
+                found = f"{folder} is not the output folder of a run: it has no run.json"
+            raise OutputError(found) from None
         except (OSError, ValueError) as error:
             raise OutputError(f"{path} cannot be used: {error}") from None
         result._files = None
@@ -786,6 +790,7 @@ def _draw_faces(ax: Any, cells: tuple[Any, Any, Any], factor: float, values: Any
     drawn.set(clim=colours["clim"], edgecolor="face", linewidth=0.2)
     low, high = polygons.min(axis=(0, 1)), polygons.max(axis=(0, 1))
     ax.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), zlim=(low[2], high[2]))
+    ax.locator_params(nbins=5)
     ax.set_box_aspect(np.maximum(high - low, 1e-3 * (high - low).max()))
     return drawn
 

@@ -188,9 +188,10 @@ class Sweep:
             if None not in values:
                 columns[name] = values
         words = ("run", "status", *self.keys)
-        for name, values in columns.items():
+        for name, texts in columns.items():
             if name not in words:
-                columns[name] = [float(value) if value else float("nan") for value in values]
+                found = [_number(text) if text else float("nan") for text in texts]
+                columns[name] = found if all(isinstance(value, int) for value in found) else [float(value) for value in found]
         frame: pandas.DataFrame = package.DataFrame(columns)
         return frame
 

@@ -208,6 +208,7 @@ def test_records_show_names_and_values(plate):
     assert f"{result.audit.kinetic_energy:.6g}" in str(result.audit)
     # A long text, such as that of the deck, takes one line.
     assert len(max(shown.splitlines(), key=len)) < 400 and "… (" in shown
+    assert pc.check(plate).deck == "<dict>" and all(text.startswith("<dict>:") for text in pc.check(plate).warnings)
     assert "steps" in str(pc.check(plate)) and str(pc.check(plate).steps) in str(pc.check(plate))
 
 
@@ -477,6 +478,10 @@ def test_fits_find_known_values(bar):
 def test_wrong_fits_are_rejected(bar):
     bar["probe"] = [{"name": "end", "at": ["1 m"]}]
     curve = ([0.0, 1e-4], [1.0, 2.0])
+    with pytest.raises(pc.OutputError, match="folder of a fit"):
+        Path("f").mkdir()
+        Path("f/fit.json").write_text("{}")
+        pc.open("f")
     for change, says in [
         ({"keys": []}, "at least one key"),
         ({"keys": ["material.colour"]}, "material.colour"),

@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use super::chart::value_of;
 use super::record::{Member, Record};
 use crate::error::RunError;
 use crate::json::read_json;
@@ -65,19 +64,6 @@ impl SweepResults {
     /// Returns the values of the keys of each run as written in decks.
     pub fn values(&self) -> impl Iterator<Item = &[String]> {
         self.members.iter().map(|member| member.values.as_slice())
-    }
-
-    /// Returns the values of the keys of each run in SI units; none for values that are not numbers.
-    ///
-    /// # Errors
-    /// The deck cannot be read.
-    pub fn numbers(&self) -> Result<Vec<Vec<Option<f64>>>, RunError> {
-        let of_member = |member: &Member| {
-            let deck = member.deck.read()?;
-            let axes = self.record.axes.iter();
-            Ok(axes.map(|axis| value_of(&deck, &axis.key)).collect())
-        };
-        self.members.iter().map(of_member).collect()
     }
 
     /// Returns the name of each run, also the name of its folder, and its results if there are any.
