@@ -202,7 +202,7 @@ def fit(
             raise PericlesError(f"{name} = {value}; allowed: a number between 0 and 1")
     from ._sweep import _bar
 
-    with tempfile.TemporaryDirectory(prefix="pericles-") as place, _bar(runs, progress) as advance:
+    with tempfile.TemporaryDirectory(prefix="pericles-") as place, _bar(None, progress) as advance:
         path = _curve_file(curve, (x, y), Path(place))
         options = {
             "curve": path, "x": x, "y": y, "keys": texts,

@@ -8,7 +8,7 @@ import os
 import queue
 import sys
 import threading
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -157,8 +157,10 @@ class Sweep:
                         first += 1
                         yield point
             finally:
-                self._core.stop()
-                thread.join()
+                # Repeated, because the thread may not have begun.
+                while thread.is_alive():
+                    self._core.stop()
+                    thread.join(0.1)
 
     def run(self) -> Sweep:
         """Run all runs that have not finished; a failed run does not stop the others."""
@@ -276,8 +278,8 @@ def _number(text: str) -> int | float | str:
 
 
 @contextlib.contextmanager
-def _bar(count: int, progress: bool, unit: str = "run") -> Iterator[Any]:
-    """Return a function that shows that one more run has ended."""
+def _bar(count: int | None, progress: bool) -> Iterator[Callable[[str], object]]:
+    """Return a function that shows that one more run has ended; ``count`` is the number of runs, if it is known."""
     if not progress:
         yield lambda _: None
         return
@@ -285,7 +287,8 @@ def _bar(count: int, progress: bool, unit: str = "run") -> Iterator[Any]:
         from tqdm.auto import tqdm
     except ImportError:
         numbers = itertools.count(1)
-        yield lambda name: print(f"{unit} {next(numbers)} of {count}: {name}", file=sys.stderr)
+        of = "" if count is None else f" of {count}"
+        yield lambda name: print(f"run {next(numbers)}{of}: {name}".rstrip(": "), file=sys.stderr)
         return
-    with tqdm(total=count, unit=unit) as bar:
+    with tqdm(total=count, unit="run") as bar:
         yield lambda _: bar.update(1)
