@@ -72,6 +72,7 @@ def test_an_interrupted_sweep_goes_on():
     sent = interrupt_after(1.0)
     with pytest.raises(KeyboardInterrupt):
         sweep.run()
+    # A run that is stopped writes a checkpoint.
     assert time.monotonic() - sent[0] < 2.0
     state = pc.Sweep.open("s")[0].result
     assert state.info.status == "stopped" and 0 < state.info.progress["last_step"]
@@ -105,13 +106,6 @@ def test_an_interrupted_build():
         while True:
             pc.Deck.from_dict(deck).build()
     assert time.monotonic() - sent[0] < 0.2
-
-
-def test_an_interrupted_sweep():
-    sent = interrupt_after(0.7)
-    with pytest.raises(KeyboardInterrupt):
-        list(pc.sweep(LONG, {"material.density": [2400, 2500]}, out="s"))
-    assert time.monotonic() - sent[0] < 0.6
 
 
 def test_two_threads_on_one_simulation():
