@@ -54,7 +54,7 @@ impl Outcome {
         evaluations: &[Evaluation],
     ) -> Self {
         let measured = record.measured.clone();
-        let errors = standard_errors(minimum, ranges);
+        let errors = standard_errors(minimum, ranges, record.step);
         let freedom = minimum.residuals.len().saturating_sub(ranges.len());
         let factor = two_sided_95(freedom);
         let values = record.parameters.iter().zip(&minimum.values).zip(errors);
