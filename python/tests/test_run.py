@@ -36,10 +36,13 @@ def lasting(value):
 
 
 def files(folder: Path) -> dict[str, bytes]:
-    """Return the files of a run; of run.json what two runs of the program have in common."""
+    """Return the files of a run; of each run.json what two runs of the program have in common."""
     found = (path for path in folder.rglob("*") if path.is_file() and path.name != ".lock")
     out = {str(path.relative_to(folder)): path.read_bytes() for path in found}
-    out["run.json"] = json.dumps(lasting(json.loads(out["run.json"]))).encode()
+    for name in out:
+        if name.endswith("run.json"):
+            # The runs of steps name the checkpoint from which they start.
+            out[name] = json.dumps(lasting(json.loads(out[name]))).replace(f"{folder}/", "").encode()
     return out
 
 
