@@ -32,6 +32,7 @@ from ._errors import (
     TooLargeError,
     UnstableError,
 )
+from ._fit import Fit, FittedValue, fit
 from ._functions import (
     Check,
     Difference,
@@ -51,29 +52,35 @@ from ._functions import (
 from ._functions import open_ as open
 from ._model import Model
 from ._pericles import __version__
-from ._result import Record, Result, Table, View
+from ._result import Audit, Info, Progress, Record, Result, Table, View
 from ._simulation import STOP, Simulation, Snapshot
-from ._sweep import SweepPoint, sweep
+from ._sweep import Sweep, SweepPoint, sweep
 
 __all__ = [
     "STOP",
+    "Audit",
     "Check",
     "Deck",
     "DeckError",
     "Difference",
     "Dispersion",
+    "Fit",
+    "FittedValue",
+    "Info",
     "Model",
     "Modes",
     "OutputError",
     "PericlesError",
     "PericlesWarning",
     "Problem",
+    "Progress",
     "Record",
     "Report",
     "Reproduction",
     "Result",
     "Simulation",
     "Snapshot",
+    "Sweep",
     "SweepPoint",
     "Table",
     "TooLargeError",
@@ -83,6 +90,7 @@ __all__ = [
     "check",
     "diff",
     "dispersion",
+    "fit",
     "geodesics",
     "mesh",
     "modes",

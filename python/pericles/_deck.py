@@ -11,11 +11,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _pericles, _toml
-from ._errors import DeckError, OutputError, PericlesError, PericlesWarning
+from ._errors import DeckError, OutputError, PericlesError, PericlesWarning, Problem
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from ._functions import Check
     from ._model import Model
+    from ._types import DeckLike
 
 
 def _overrides(changes: Mapping[str, Any] | None) -> list[str]:
@@ -104,6 +107,16 @@ class Deck(MutableMapping[str, Any]):
         """The file of the deck, which messages name."""
         return self._name
 
+    @property
+    def stem(self) -> str:
+        """The name of the file without folder and ending, from which names of output folders are made; ``run`` without a file."""
+        return "run" if self._name.startswith("<") else Path(self._name).stem
+
+    @property
+    def steps(self) -> list[str]:
+        """Names of the steps of a deck with ``[[step]]``; empty for other decks."""
+        return list(self._core().steps())
+
     def _all(self) -> dict[str, Any]:
         """The tables; a text becomes a dict when it is first changed or looked into."""
         if self._tables is None:
@@ -165,16 +178,17 @@ class Deck(MutableMapping[str, Any]):
         """Write the deck to a file, which the program reads too."""
         Path(path).write_text(self.to_toml(), encoding="utf-8")
 
-    def _core(self, sets: list[str] | None = None) -> Any:
+    def _core(self, sets: list[str] | None = None) -> _pericles.Deck:
         text = self._text if self._text is not None else _toml.dumps(self._tables or {})
         return parsed(text, self._name, self._overrides, sets or [])
 
-    def values(self) -> Any:
+    def values(self) -> dict[str, Any]:  # type: ignore[override]
         """Return all values in SI units, defaults included, as a dict of tables.
 
         Unlike the method of a dict it returns a dict: the deck as the reader understands it.
         """
-        return json.loads(self._core().values())
+        values: dict[str, Any] = json.loads(self._core().values())
+        return values
 
     def check(self) -> Check:
         """Check the deck and report size, memory, time step and warnings, without running it.
@@ -191,10 +205,10 @@ class Deck(MutableMapping[str, Any]):
     def build(
         self,
         *,
-        points: Any = None,
-        volumes: Any = None,
-        blocks: Any = None,
-        sets: Mapping[str, Any] | None = None,
+        points: ArrayLike | None = None,
+        volumes: ArrayLike | None = None,
+        blocks: ArrayLike | None = None,
+        sets: Mapping[str, ArrayLike] | None = None,
     ) -> Model:
         """Build points, bonds and the time step.
 
@@ -224,6 +238,9 @@ class Deck(MutableMapping[str, Any]):
         deck._tables = copy.deepcopy(self._tables, memo)
         deck._text, deck._name, deck._overrides = self._text, self._name, list(self._overrides)
         return deck
+
+    def __str__(self) -> str:
+        return self.to_toml()
 
     def __repr__(self) -> str:
         tables = ", ".join(self._all()) if self._tables is not None else f"{len((self._text or '').splitlines())} lines"
@@ -267,7 +284,7 @@ def _apply(tables: Any, override: str) -> None:
         raise PericlesError(f"the deck has no place for the key `{key.strip()}`") from None
 
 
-def parsed(text: str, name: str, overrides: list[str], sets: list[str]) -> Any:
+def parsed(text: str, name: str, overrides: list[str], sets: list[str]) -> _pericles.Deck:
     """Parse a deck; problems name the keys of their lines."""
     try:
         return _pericles.Deck.parse(text, name, overrides, sets)
@@ -280,9 +297,10 @@ def located(error: DeckError, text: str, name: str) -> None:
     """Add its key to every problem, and to the message if nobody has seen the text, as for a dict."""
     problems = []
     for problem in error.problems:
+        is_known = problem.path is not None
         path = problem.path or (_toml.path_at(text, problem.line) if problem.file == name else _of_override(problem))
         problem = problem._replace(path=path)
-        if name.startswith("<dict") and problem.file == name and path and not problem.message.startswith(path):
+        if not is_known and name.startswith("<dict") and problem.file == name and path and not problem.message.startswith(path):
             place = f"{name}:{problem.line}:{problem.column}: "
             problem = problem._replace(text=problem.text.replace(place, f"{place}{path}: ", 1))
         problems.append(problem)
@@ -293,16 +311,18 @@ def located(error: DeckError, text: str, name: str) -> None:
     error.problems = problems
 
 
-def _of_override(problem: Any) -> str | None:
+def _of_override(problem: Problem) -> str | None:
     prefix = "--set "
-    return problem.file[len(prefix) :] if (problem.file or "").startswith(prefix) else None
+    return problem.file[len(prefix) :] if problem.file and problem.file.startswith(prefix) else None
 
 
-def as_deck(given: Any, changes: Mapping[str, Any] | None = None) -> Deck:
+def as_deck(given: DeckLike, changes: Mapping[str, Any] | None = None) -> Deck:
     """Return a deck from a deck, a dict or a path."""
     if isinstance(given, Deck):
         return given.with_(changes) if changes else given
     if isinstance(given, Mapping):
         deck = Deck.from_dict(given)
         return deck.with_(changes) if changes else deck
+    if not isinstance(given, (str, os.PathLike)):
+        raise PericlesError(f"the deck is a {type(given).__name__}; allowed: a Deck, a dict of tables, or the path of a file")
     return Deck.read(given, set=changes)

@@ -129,3 +129,8 @@ class TooLargeError(PericlesError, MemoryError):
 
 class OutputError(PericlesError, OSError):
     """A file or folder cannot be read or written."""
+
+
+# Messages name the classes as users write them.
+for _class in (PericlesWarning, PericlesError, Problem, DeckError, UnstableError, TooLargeError, OutputError):
+    _class.__module__ = "pericles"

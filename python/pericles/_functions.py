@@ -19,6 +19,9 @@ from ._result import Record, Result, Table
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
+
+    from ._sweep import Sweep
+    from ._types import Changes, DeckLike
 else:
     from ._lazy import np
 
@@ -39,7 +42,37 @@ class Report(Record):
 
 
 class Check(Report):
-    """What a run of a deck needs: size, memory, time step, estimated run time, and warnings."""
+    """What a run of a deck needs: size, memory, time step, estimated run time, and warnings. :class:`Report` has further
+    entries.
+
+    Attributes
+    ----------
+    points, bonds, steps, dimension : int
+        Size of the body and of the run.
+    dt, stable_step, end : float
+        The time step, its bound, and the end of the run, s.
+    horizon, spacing : float
+        Horizon and spacing, m.
+    memory_estimate : float
+        Memory of the run, bytes.
+    run_seconds : float
+        Estimated run time, s.
+    warnings : list of str
+        Warnings about the model.
+    """
+
+    points: int
+    bonds: int
+    steps: int
+    dimension: int
+    dt: float
+    stable_step: float | None
+    end: float
+    horizon: float
+    spacing: float
+    memory_estimate: float
+    run_seconds: float
+    warnings: list[str]
 
 
 class Dispersion(Report):
@@ -85,7 +118,18 @@ class Reproduction(Report):
 
 
 class Difference(Report):
-    """The comparison of two results."""
+    """The comparison of two results.
+
+    Attributes
+    ----------
+    equal : bool
+        Whether all values agree within the tolerance and nothing is missing.
+    rows : list of Record
+        The differences of fields and columns.
+    """
+
+    equal: bool
+    rows: list[Record]
 
     def __bool__(self) -> bool:
         raise PericlesError("use `.equal` (within the tolerance) or `.identical` (bitwise)")
@@ -125,7 +169,7 @@ def _absolute(tables: Any, folder: Path) -> None:
             tables[key] = str((folder / value).absolute())
 
 
-def check(deck: Any, *, set: Mapping[str, Any] | None = None) -> Check:
+def check(deck: DeckLike, *, set: Changes | None = None) -> Check:
     """Check a deck and report what its run needs, without running it.
 
     Parameters
@@ -143,10 +187,20 @@ def check(deck: Any, *, set: Mapping[str, Any] | None = None) -> Check:
     deck = as_deck(deck, set)
     deck._core()
     with _file(deck) as arguments:
-        return Check(call("check", *arguments))
+        found = call("check", *arguments)
+        return Check(_renamed(found, arguments[0], deck.name))
 
 
-def modes(deck: Any, *, count: int = 12, prestress: bool = False, set: Mapping[str, Any] | None = None) -> Modes:
+def _renamed(value: Any, file: str, name: str) -> Any:
+    """Return results in which the name of a deck replaces its temporary file."""
+    if isinstance(value, dict):
+        return {key: _renamed(entry, file, name) for key, entry in value.items()}
+    if isinstance(value, list):
+        return [_renamed(entry, file, name) for entry in value]
+    return value.replace(file, name) if isinstance(value, str) else value
+
+
+def modes(deck: DeckLike, *, count: int = 12, prestress: bool = False, set: Changes | None = None) -> Modes:
     """Compute the lowest natural frequencies and mode shapes of a body.
 
     Parameters
@@ -191,11 +245,11 @@ def _dimension(deck: Deck) -> int:
 
 
 def dispersion(
-    deck: Any,
+    deck: DeckLike,
     *,
     direction: Sequence[float] | None = None,
     measure: bool = False,
-    set: Mapping[str, Any] | None = None,
+    set: Changes | None = None,
 ) -> Dispersion:
     """Analyse numerical dispersion and stability of the grid and kernel of a deck.
 
@@ -286,7 +340,7 @@ def reproduce(study: str, *, full: bool = False) -> Reproduction:
         return Reproduction(call("reproduce", study, "--out", os.path.join(place, "out"), "--quiet", *flags))
 
 
-def diff(a: Any, b: Any, *, tolerance: float = 0.0) -> Difference:
+def diff(a: Result | str | os.PathLike[str], b: Result | str | os.PathLike[str], *, tolerance: float = 0.0) -> Difference:
     """Compare two results field by field and column by column.
 
     Parameters
@@ -311,9 +365,9 @@ def diff(a: Any, b: Any, *, tolerance: float = 0.0) -> Difference:
 
 
 def run(
-    deck: Any,
+    deck: DeckLike,
     *,
-    set: Mapping[str, Any] | None = None,
+    set: Changes | None = None,
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: bool = False,
@@ -331,11 +385,12 @@ def run(
     force : bool
         Replace results in the folder.
     progress : bool
-        Show progress.
+        Show progress; not available for decks with ``[[step]]``.
 
     Returns
     -------
     Result
+        For a deck with ``[[step]]`` all steps on one time line; :attr:`Result.steps` has the results of each.
 
     Raises
     ------
@@ -348,24 +403,36 @@ def run(
     from ._simulation import Simulation
 
     deck = as_deck(deck, set)
+    stem = Path(".") / deck.stem if out is None else None
+    if deck.steps:
+        made = _pericles.run_steps(deck._core(), None if out is None else Path(out), stem or Path(), force)
+        result = Result.open(made)
+        warn(result.warnings)
+        return result
     model = Model(deck)
-    stem = None
-    if out is None:
-        stem = Path(".") / (Path(deck.name).stem if not deck.name.startswith("<") else "run")
     core = model._core.simulation(None if out is None else Path(out), stem, force, [], ("never", 0.0), [])
     warn(core.warnings)
     with Simulation(core, model) as simulation:
         simulation.run(progress=progress)
         folder = core.folder
+    assert folder is not None, "given above"
     return Result.open(folder)
 
 
-def open_(folder: str | os.PathLike[str]) -> Result:
-    """Open the results of a run.
+def open_(folder: str | os.PathLike[str]) -> Result | Sweep:
+    """Open the results of a run or of a sweep.
 
     Parameters
     ----------
     folder : path
-        The output folder of the program or of :func:`run`.
+        The output folder of the program, of :func:`run` or of :func:`sweep`.
+
+    Returns
+    -------
+    Result or Sweep
+        A sweep for the folder of a sweep, otherwise a result. :meth:`Result.open` and :meth:`Sweep.open` open one kind only.
     """
-    return Result.open(folder)
+    from ._sweep import opened
+
+    found = opened(Path(folder))
+    return Result.open(folder) if found is None else found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,8 +16,10 @@ from ._errors import DeckError, PericlesError
 
 if TYPE_CHECKING:
     import numpy as np
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
+
     from ._simulation import Simulation
+    from ._types import Field, Function, Points, Vector
 else:
     from ._lazy import np
 
@@ -40,10 +43,10 @@ class Model:
         self,
         deck: Deck,
         *,
-        points: Any = None,
-        volumes: Any = None,
-        blocks: Any = None,
-        sets: Mapping[str, Any] | None = None,
+        points: ArrayLike | None = None,
+        volumes: ArrayLike | None = None,
+        blocks: ArrayLike | None = None,
+        sets: Mapping[str, ArrayLike] | None = None,
     ) -> None:
         self.deck = deck.copy()
         self._amended: list[str] = []
@@ -59,9 +62,9 @@ class Model:
         for name, given in (sets or {}).items():
             self._add_set(name, as_numbers(given, count, f"of the set `{name}`"))
         self._deck = self._parsed()
-        self._built: Any = self._build()
+        self._built: _pericles.Model | None = self._build()
         #: The body, which later changes of conditions do not change.
-        self._body = self._built
+        self._body: _pericles.Model = self._core
 
     def _own_cloud(self, points: Any, volumes: Any, blocks: Any) -> tuple[Any, Any, Any]:
         x = np.asarray(points, dtype=float)
@@ -134,23 +137,23 @@ class Model:
             located(error, text, self.deck.name)
             raise
 
-    def _parsed(self) -> Any:
+    def _parsed(self) -> _pericles.Deck:
         """Read the deck, which finds its problems, without building points and bonds."""
         with self._locating():
             return self.deck._core(list(self._sets))
 
-    def _build(self) -> Any:
+    def _build(self) -> _pericles.Model:
         sets = [(name, numbers.tolist()) for name, numbers in self._sets.items()]
         x, v, b = self._cloud or (None, None, None)
         with self._locating():
             core = _pericles.Model(self._deck, x, v, b, sets)
-        self._facts_of_built = json.loads(core.facts())
+        self._facts_of_built: dict[str, Any] = json.loads(core.facts())
         for method, arguments in self._changes:
             getattr(core, method)(*arguments)
         return core
 
     @property
-    def _core(self) -> Any:
+    def _core(self) -> _pericles.Model:
         """The model of the present deck, which is built when it is needed."""
         if self._built is None:
             self._built = self._build()
@@ -198,7 +201,8 @@ class Model:
     @property
     def stable_step(self) -> float | None:
         """Largest stable time step, s; None for schemes that are stable for any step."""
-        return self._facts["stable_step"]
+        step: float | None = self._facts["stable_step"]
+        return step
 
     @property
     def sets(self) -> list[str]:
@@ -208,7 +212,7 @@ class Model:
     def __len__(self) -> int:
         return int(self._facts_of_built["points"])
 
-    def numbers(self, of: Any = "all") -> NDArray[np.uint32]:
+    def numbers(self, of: Points = "all") -> NDArray[np.uint32]:
         """Return the numbers of the points of a set, a mask or a list of numbers, in ascending order."""
         if isinstance(of, str):
             found = self._sets[of] if of in self._sets else self._body.numbers(of)
@@ -224,7 +228,7 @@ class Model:
             given = given(self.points)
         return finite(as_vectors(given, len(self), self.dimension, what), what)
 
-    def set_initial(self, *, displacement: Any = None, velocity: Any = None) -> None:
+    def set_initial(self, *, displacement: ArrayLike | Field | None = None, velocity: ArrayLike | Field | None = None) -> None:
         """Replace the initial state of the whole body.
 
         Parameters
@@ -240,45 +244,98 @@ class Model:
         self._change("set_initial", u, v)
         self._amended.append("the initial state")
 
-    def load(self, on: Any = "all", *, body_force: Any) -> None:
-        """Add a body force on points.
+    def load(
+        self,
+        on: Points = "all",
+        *,
+        body_force: ArrayLike | Function | Vector | None = None,
+        traction: ArrayLike | Function | Vector | None = None,
+        area: float | str | None = None,
+    ) -> None:
+        """Add a load on points: a body force or a traction.
 
         Parameters
         ----------
         on : str, mask or point numbers
             The points.
-        body_force : array, function or deck expressions
-            Force density, N/m³: an array of shape (k, dimension) or one vector; a function ``f(t, x)`` of the time (s) and
-            the positions of the k points (m) that returns such an array; or a list of texts, each an expression of x, y, z
-            (m) and t (s) in SI units as in a deck. A function is called once for each time that the scheme evaluates.
+        body_force : list, array or function
+            Force density, N/m³. A list has one entry per axis as in a deck: a number, a text with a unit, or an expression of
+            x, y, z (m) and t (s), such as ``["1 GN/m3", "-1e9 * sin(2e6 * t)"]``. An array has the shape (k, dimension). A
+            function ``f(t, x)`` of the time (s) and the positions of the k points (m) returns such an array or one vector,
+            and is called once for each time that the scheme evaluates.
+        traction : list, array or function
+            Force per area, N/m², in the same forms. It is distributed over the points as the body force traction · area / volume
+            with the volume of the points.
+        area : float or str, optional
+            The loaded area of a traction, m². By default that of the face of the body, which lists need not give.
         """
-        if _is_expressions(body_force):
-            self._deck_entry("load", on, {"body_force": _expressions(body_force)})
+        given: dict[str, Any] = {"body_force": body_force, "traction": traction}
+        given = {key: value for key, value in given.items() if value is not None}
+        if len(given) != 1:
+            raise PericlesError("give body_force or traction, one of them")
+        [(key, value)] = given.items()
+        if area is not None and key == "body_force":
+            raise PericlesError("the area belongs to a traction; a body force acts on the volume of the points")
+        what = key.replace("_", " ")
+        is_text = _is_vector(value) and any(isinstance(entry, str) for entry in value)
+        if is_text or (_is_vector(value) and key == "traction"):
+            entries = [0.0 if entry is None else entry for entry in self._per_axis(value, what)]
+            entry: dict[str, Any] = {key: _expressions(entries)}
+            self._deck_entry("load", on, entry if area is None else {**entry, "area": area})
             return
         numbers = self.numbers(on)
-        if callable(body_force):
-            as_vectors(body_force(0.0, self.points[numbers]), len(numbers), self.dimension, "the body force")
-            self._change("add_load", numbers.tolist(), None, body_force)
+        factor = 1.0
+        if key == "traction":
+            factor = self._loaded_area(on, area) / float(self.volumes[numbers].sum())
+        if callable(value):
+            function = value
+            as_vectors(function(0.0, self.points[numbers]), len(numbers), self.dimension, f"the {what}")
+
+            def density(t: float, x: NDArray[np.float64]) -> NDArray[np.float64]:
+                return factor * as_vectors(function(t, x), len(x), self.dimension, f"the {what}")
+
+            self._change("add_load", numbers.tolist(), None, function if key == "body_force" else density)
         else:
-            values = finite(as_vectors(body_force, len(numbers), self.dimension, "the body force"), "the body force")
-            self._change("add_load", numbers.tolist(), values, None)
+            values = finite(as_vectors(value, len(numbers), self.dimension, f"the {what}"), f"the {what}")
+            self._change("add_load", numbers.tolist(), factor * values, None)
         self._amended.append(f"a load on {_named(on)}")
 
-    def prescribe(self, on: Any, *, displacement: Any = None, velocity: Any = None, axes: str | None = None) -> None:
+    def _loaded_area(self, on: Points, area: float | str | None) -> float:
+        """Return the loaded area of a traction by an array or a function, m²."""
+        if area is None:
+            raise PericlesError(
+                "a traction by an array or function needs the loaded area, such as area=\"50 mm2\"; tractions by lists find the area of a face"
+            )
+        tables = {
+            "body": {"shape": "bar", "length": 1, "spacing": 0.1, "area": area},
+            "material": {"density": 1, "youngs_modulus": 1, "horizon_ratio": 3},
+            "time": {"end": 1},
+        }
+        return float(Deck.from_dict(tables).values()["body"]["area"])
+
+    def prescribe(
+        self,
+        on: Points,
+        *,
+        displacement: ArrayLike | Function | Vector | float | str | None = None,
+        velocity: ArrayLike | Function | Vector | float | str | None = None,
+        axes: str | None = None,
+    ) -> None:
         """Prescribe the displacement or velocity of points.
 
         Parameters
         ----------
         on : str, mask or point numbers
             The points.
-        displacement : list, function or array
-            One entry per axis as in a deck: a number (m), a text, which is an expression of x, y, z (m) and t (s), or None
-            for a free axis; such as ``[0, None]`` or ``["1e-6 * sin(1e6 * t)", 0]``. Or a function ``f(t, x)`` of the time
-            (s) and the positions of the k points (m) that returns displacements (m) of shape (k, dimension) or one vector;
-            or a constant array of shape (k, dimension).
-        velocity : list or function, optional
-            With a function as displacement: its time derivative, m/s. Derivatives that are not given are differences over one
-            time step. Alone: a list of constant velocities (m/s), such as ``[2.0, None]``.
+        displacement : list, number, text, array or function
+            Displacement, m. A list has one entry per axis as in a deck: a number, a text with a unit, an expression of x, y, z
+            (m) and t (s), or None for a free axis, such as ``["1 um", None]`` or ``["1e-6 * sin(1e6 * t)", 0]``. One number or
+            text is for all prescribed axes. An array of shape (k, dimension) is constant. A function ``f(t, x)`` of the time
+            (s) and the positions of the k points (m) returns such an array or one vector.
+        velocity : list, number, text, array or function
+            Velocity, m/s, in the same forms, except that lists have no expressions. Points start from their initial
+            displacement; a function is integrated by Simpson's rule over the time steps. With a function as displacement: the
+            function that is its time derivative. Derivatives that are not given are differences over one time step.
         axes : str, optional
             The prescribed axes, such as ``"x"``; by default all.
         """
@@ -288,27 +345,42 @@ class Model:
             raise PericlesError(f'axes = "{axes}"; allowed: some of {", ".join(known)}, such as "x"')
         if displacement is None and velocity is None:
             raise PericlesError("give displacement, velocity or both")
-        if displacement is None or _is_vector(displacement):
-            if displacement is not None and velocity is not None:
-                raise PericlesError("a velocity besides a displacement is for functions; expressions have exact derivatives")
-            given, quantity = (velocity, "velocity") if displacement is None else (displacement, "displacement")
-            if not _is_vector(given) or len(given) != self.dimension:
-                raise PericlesError(f"the {quantity} alone is a list with one entry per axis: {self.dimension} numbers, texts or None")
-            entries = [entry if axis in wanted else None for axis, entry in zip(known, _expressions(given))]
-            self._deck_entry("constraint", on, {quantity: ["free" if entry is None else entry for entry in entries]})
+        if displacement is not None and velocity is not None and not (callable(displacement) and callable(velocity)):
+            raise PericlesError("a velocity besides a displacement is for functions; expressions have exact derivatives")
+        are_rates = displacement is None
+        given: Any
+        given, quantity = (velocity, "velocity") if are_rates else (displacement, "displacement")
+        if isinstance(given, (str, int, float)):
+            if axes is None and self.dimension > 1:
+                raise PericlesError(f'the {quantity} is one value for {self.dimension} axes; give axes, such as axes="x", or a list')
+            given = [given] * self.dimension
+        if _is_vector(given):
+            entries = _expressions(self._per_axis(given, quantity))
+            chosen = ["free" if entry is None or axis not in wanted else entry for axis, entry in zip(known, entries)]
+            self._deck_entry("constraint", on, {quantity: chosen})
             return
         numbers = self.numbers(on)
-        if not callable(displacement):
-            values = finite(as_vectors(displacement, len(numbers), self.dimension, "the displacement"), "the displacement")
-            displacement, velocity = (lambda t, x: values), (lambda t, x: np.zeros_like(values))
-        functions = [displacement] if velocity is None else [displacement, velocity]
-        for function, what in zip(functions, ("displacement", "velocity")):
-            as_vectors(function(0.0, self.points[numbers]), len(numbers), self.dimension, f"the prescribed {what}")
         name = on if isinstance(on, str) else f"motion_{len(self._changes) + 1}"
-        self._change("add_motion", name, numbers.tolist(), [axis in wanted for axis in known], functions)
+        along = [axis in wanted for axis in known]
+        if callable(given):
+            functions = [given] if are_rates or velocity is None else [given, velocity]
+            for function, what in zip(functions, (quantity, "velocity")):
+                as_vectors(function(0.0, self.points[numbers]), len(numbers), self.dimension, f"the prescribed {what}")
+            self._change("add_motion", name, numbers.tolist(), along, functions, are_rates)
+        else:
+            values = finite(as_vectors(given, len(numbers), self.dimension, f"the {quantity}"), f"the {quantity}")
+            self._change("add_constant_motion", name, numbers.tolist(), along, values, are_rates)
         self._amended.append(f"a prescribed motion of {_named(on)}")
 
-    def no_fail(self, on: Any) -> None:
+    def _per_axis(self, given: Any, what: str) -> list[Any]:
+        """Return a list with one entry per axis."""
+        if len(given) != self.dimension:
+            raise PericlesError(
+                f"the {what} has {len(given)} entries; allowed: a list with one entry per axis, {self.dimension} numbers, texts or None"
+            )
+        return [entry.item() if hasattr(entry, "item") else entry for entry in given]
+
+    def no_fail(self, on: Points) -> None:
         """Exclude the bonds of points from failure.
 
         Parameters
@@ -352,7 +424,7 @@ class Model:
     def simulation(
         self,
         *,
-        out: Any = None,
+        out: str | os.PathLike[str] | None = None,
         force: bool = False,
         keep: Sequence[str] = ("displacement", "velocity", "damage"),
         every: int | None = None,
@@ -368,7 +440,7 @@ class Model:
         force : bool
             Replace results in the folder.
         keep : sequence of str
-            The fields that a simulation in memory keeps.
+            The fields that a simulation in memory keeps, besides its tables.
         every, time, count : int or float, optional
             When they are kept: every given number of steps, each given time (s), or the given number of times. By default
             100 times.
@@ -416,17 +488,17 @@ def table_html(title: str, facts: Mapping[str, Any]) -> str:
     return f"<b>{html.escape(title)}</b><table>{''.join(rows)}</table>{warnings}"
 
 
-def _is_expressions(given: Any) -> bool:
-    return isinstance(given, (list, tuple)) and any(isinstance(entry, str) for entry in given)
-
-
 def _is_vector(given: Any) -> bool:
     """Return whether a value has one entry per axis, as in a deck."""
-    return isinstance(given, (list, tuple)) or getattr(given, "ndim", None) == 1
+    if isinstance(given, (list, tuple)):
+        return all(entry is None or isinstance(entry, (str, int, float)) or hasattr(entry, "item") for entry in given)
+    return getattr(given, "ndim", None) == 1
 
 
-def _expressions(given: Any) -> list[Any]:
-    return [{"expression": entry} if isinstance(entry, str) and entry != "free" else entry for entry in given]
+def _expressions(given: list[Any]) -> list[Any]:
+    """Return texts without a unit as expressions."""
+    is_expression = [isinstance(entry, str) and entry != "free" and not _pericles.is_quantity(entry) for entry in given]
+    return [{"expression": entry} if marked else entry for entry, marked in zip(given, is_expression)]
 
 
 def _named(on: Any) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
 import threading
 import time as clock
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     from ._model import Model
 
 Snapshot = _pericles.Snapshot
+
+#: A function of a snapshot, which may return :data:`STOP`.
+Callback = Callable[[Snapshot], object]
 
 
 class _Stop:
@@ -48,13 +52,13 @@ class Simulation:
     A run releases the interpreter's lock. Ctrl-C stops it between two steps; :meth:`run` then goes on.
     """
 
-    def __init__(self, core: Any, model: Model) -> None:
+    def __init__(self, core: _pericles.Simulation, model: Model) -> None:
         self._core = core
         self._model = model
 
     def every(
         self, *, steps: int | None = None, time: float | None = None, count: int | None = None
-    ) -> Callable[[Callable[[Snapshot], Any]], Callable[[Snapshot], Any]]:
+    ) -> Callable[[Callback], Callback]:
         """Call a function during the run; use as a decorator.
 
         The function receives a snapshot with ``step``, ``time``, ``energies``, ``broken_bonds`` and ``field(name)``, which
@@ -70,7 +74,7 @@ class Simulation:
         if found is None:
             raise PericlesError("give one of steps, time and count")
 
-        def register(function: Callable[[Snapshot], Any]) -> Callable[[Snapshot], Any]:
+        def register(function: Callback) -> Callback:
             self._core.observe(found[0], float(found[1]), function, STOP)
             return function
 
@@ -141,18 +145,18 @@ class Simulation:
 
     @property
     def stop_reason(self) -> str | None:
-        """The stop condition of the deck that ended the run, if one did."""
+        """What stopped the run before its last step: a stop condition of the deck, a callback, or :meth:`stop`."""
         return self._core.stop_reason
 
     def field(self, name: str) -> NDArray[np.float64]:
         """Return a copy of a field of the current state: shape (n, components), or (n,) for scalars."""
         return self._core.field(name)
 
-    def save(self, path: Any) -> None:
+    def save(self, path: str | os.PathLike[str]) -> None:
         """Write the state to a file. It holds no functions: :meth:`load` needs the same model."""
         self._core.save(path)
 
-    def load(self, path: Any) -> None:
+    def load(self, path: str | os.PathLike[str]) -> None:
         """Read the state that :meth:`save`, or a run of the same model, wrote; the run continues bitwise identically."""
         self._core.load(path)
 
@@ -169,7 +173,7 @@ class Simulation:
     def __enter__(self) -> Simulation:
         return self
 
-    def __exit__(self, *_: Any) -> None:
+    def __exit__(self, *_: object) -> None:
         self.close()
 
     def __repr__(self) -> str:
@@ -177,7 +181,7 @@ class Simulation:
 
 
 @contextlib.contextmanager
-def _progress(core: Any) -> Iterator[None]:
+def _progress(core: _pericles.Simulation) -> Iterator[None]:
     """Show progress from another thread, fed by the step number alone."""
     done = threading.Event()
     first = core.step

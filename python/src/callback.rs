@@ -1,12 +1,13 @@
 //! Callbacks of a run.
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use numpy::PyArray2;
 use pericles::observe::{Energies, Field, ObserveError, Observer};
 use pericles::{Archive, Checkpointed};
 use pericles_io::in_user_order;
+use pericles_run::units::quantity;
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 use pyo3::types::PyDict;
@@ -19,7 +20,19 @@ use crate::errors::{Raised, of_engine, plain};
 pub struct Live {
     step: AtomicU64,
     time: AtomicU64,
-    stop: AtomicBool,
+    asked: AtomicU8,
+}
+
+/// Who asks a run to stop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Asked {
+    /// A callback.
+    Callback = 1,
+    /// The method `stop`.
+    Program = 2,
+    /// An exception of a signal handler.
+    Signal = 3,
 }
 
 impl Live {
@@ -39,14 +52,31 @@ impl Live {
         f64::from_bits(self.time.load(Ordering::Relaxed))
     }
 
-    /// Asks the run to stop, or withdraws this.
-    pub fn ask_to_stop(&self, stop: bool) {
-        self.stop.store(stop, Ordering::Relaxed);
+    /// Asks the run to stop.
+    pub fn ask_to_stop(&self, by: Asked) {
+        self.asked.store(by as u8, Ordering::Relaxed);
+    }
+
+    /// Withdraws the request to stop.
+    pub fn go_on(&self) {
+        self.asked.store(0, Ordering::Relaxed);
     }
 
     /// Returns whether the run is to stop.
     pub fn is_asked(&self) -> bool {
-        self.stop.load(Ordering::Relaxed)
+        self.asked.load(Ordering::Relaxed) != 0
+    }
+
+    /// Returns what stopped the run, if it was asked to stop.
+    pub fn stopped(&self) -> Option<String> {
+        let asked = self.asked.load(Ordering::Relaxed);
+        let who = [
+            (Asked::Callback, "a callback returned STOP"),
+            (Asked::Program, "stop() was called"),
+            (Asked::Signal, "interrupted"),
+        ];
+        let found = who.into_iter().find(|(by, _)| *by as u8 == asked);
+        found.map(|(_, words)| format!("{words} at t = {}", quantity(self.time(), "s")))
     }
 }
 
@@ -84,6 +114,18 @@ pub fn field_unit(name: &str) -> &'static str {
         .into_iter()
         .find(|field| field.name().eq_ignore_ascii_case(name));
     found.map_or("", Field::unit)
+}
+
+/// Returns the names of the components of a field for a body of a dimension, such as `xx`; none for scalars and fields that only
+/// files have.
+#[pyfunction]
+pub fn field_components(name: &str, dimension: usize) -> Vec<&'static str> {
+    let found = Field::ALL
+        .into_iter()
+        .find(|field| field.name().eq_ignore_ascii_case(name));
+    found.map_or_else(Vec::new, |field| {
+        field.components(dimension.clamp(1, 3)).to_vec()
+    })
 }
 
 /// Number of components of a field.
@@ -222,7 +264,7 @@ impl Observer for Callback {
             let cleared = handle.get().inner.lock_py_attached(py);
             *cleared.unwrap_or_else(std::sync::PoisonError::into_inner) = None;
             if answer?.is(&self.stop) {
-                self.live.ask_to_stop(true);
+                self.live.ask_to_stop(Asked::Callback);
             }
             Ok(())
         });

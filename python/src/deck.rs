@@ -1,7 +1,6 @@
 //! Decks.
 
-use pericles_run::Source;
-use pyo3::exceptions::PyValueError;
+use pericles_run::{DeckText, Source};
 use pyo3::prelude::*;
 
 use crate::errors;
@@ -13,6 +12,14 @@ pub struct Deck {
 }
 
 impl Deck {
+    /// The text of the deck.
+    pub fn text(&self) -> &DeckText {
+        match &self.source {
+            Source::Deck { text, .. } => text,
+            Source::Model(_) => unreachable!("made from a deck"),
+        }
+    }
+
     /// The deck of the source.
     pub fn deck(&self) -> &pericles_deck::Deck {
         match &self.source {
@@ -30,14 +37,14 @@ impl Deck {
     fn parse(text: &str, name: &str, overrides: Vec<String>, sets: Vec<String>) -> PyResult<Self> {
         let deck = pericles_deck::Deck::parse_with_sets(text, name, &overrides, &sets);
         let deck = deck.map_err(errors::of_deck)?;
-        if !deck.steps().is_empty() {
-            return Err(PyValueError::new_err(format!(
-                "{name}: a deck with [[step]] has several runs; run it with `pericles run {name}` and open its results"
-            )));
-        }
         Ok(Self {
             source: Source::of_deck(deck, name.to_owned()),
         })
+    }
+
+    /// Names of the steps of a deck with several runs.
+    fn steps(&self) -> Vec<String> {
+        self.deck().steps().to_vec()
     }
 
     /// All values in SI units with defaults, as JSON.
@@ -50,4 +57,16 @@ impl Deck {
     fn title(&self) -> Option<String> {
         self.deck().model.title.clone()
     }
+}
+
+/// A time of a text with a unit as in decks, s.
+#[pyfunction]
+pub fn seconds(text: &str) -> Option<f64> {
+    pericles_deck::seconds(text)
+}
+
+/// Whether a text is a number with a unit, not an expression.
+#[pyfunction]
+pub fn is_quantity(text: &str) -> bool {
+    pericles_deck::is_quantity(text)
 }

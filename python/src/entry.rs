@@ -5,6 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
+use pericles_run::Cancel;
 use pyo3::prelude::*;
 
 use crate::errors;
@@ -64,6 +65,39 @@ pub fn guarded<T>(work: impl FnOnce() -> PyResult<T>) -> PyResult<T> {
             env!("CARGO_PKG_VERSION"),
             words.unwrap_or_default()
         )))
+    })
+}
+
+/// Runs `work` in a thread of its own and waits for it; Ctrl-C, or another exception of a signal handler, cancels it. It then
+/// ends in order, and the exception is raised.
+pub fn cancellable<T: Send + 'static>(
+    py: Python<'_>,
+    cancel: &Cancel,
+    work: impl FnOnce() -> PyResult<T> + Send + 'static,
+) -> PyResult<T> {
+    enter()?;
+    py.detach(|| {
+        let (sender, receiver) = channel();
+        std::thread::spawn(move || {
+            let _ = sender.send(guarded(work));
+        });
+        let mut raised = None;
+        loop {
+            match receiver.recv_timeout(POLL) {
+                Ok(made) => return raised.map_or(made, Err),
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Err(error) = Python::attach(|py| py.check_signals()) {
+                        cancel.cancel();
+                        raised = Some(error);
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(errors::plain(
+                        "the thread of a computation ended without a result",
+                    ));
+                }
+            }
+        }
     })
 }
 

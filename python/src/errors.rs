@@ -1,5 +1,7 @@
 //! Errors of the libraries as Python exceptions. The classes are written in Python (`_errors.py`).
 
+use std::borrow::Borrow;
+
 use pericles::{PericlesError, SimulationError};
 use pericles_deck::{BuildError, DeckError, Fault, Problem, Subject};
 use pericles_io::{IoError, MeshError};
@@ -65,7 +67,8 @@ fn memory_of(fault: &Fault) -> (Option<f64>, Option<u64>) {
 }
 
 /// An error of a deck.
-pub fn of_deck(error: DeckError) -> PyErr {
+pub fn of_deck(error: impl Borrow<DeckError>) -> PyErr {
+    let error = error.borrow();
     let message = error.to_string();
     if error.is_too_large() {
         let fault = error.problems().first().map(Problem::subject);
@@ -93,7 +96,8 @@ pub fn of_deck(error: DeckError) -> PyErr {
 }
 
 /// An error of a model without text.
-pub fn of_build(error: BuildError) -> PyErr {
+pub fn of_build(error: impl Borrow<BuildError>) -> PyErr {
+    let error = error.borrow();
     let message = error.to_string();
     if error.is_too_large() {
         let fault = error.problems().first().map(|problem| problem.subject());
@@ -116,15 +120,17 @@ pub fn of_build(error: BuildError) -> PyErr {
 }
 
 /// An error of the engine.
-pub fn of_engine(error: PericlesError) -> PyErr {
+pub fn of_engine(error: impl Borrow<PericlesError>) -> PyErr {
+    let error = error.borrow();
     plain(&error.to_string())
 }
 
 /// An error of a file.
-pub fn of_io(error: IoError) -> PyErr {
+pub fn of_io(error: impl Borrow<IoError>) -> PyErr {
+    let error = error.borrow();
     match error {
         IoError::TooLarge { needed, memory, .. } => {
-            too_large(&error.to_string(), Some(needed as f64), Some(memory))
+            too_large(&error.to_string(), Some(*needed as f64), Some(*memory))
         }
         other => output(&other.to_string()),
     }
@@ -143,19 +149,20 @@ impl std::fmt::Display for Raised {
 impl std::error::Error for Raised {}
 
 /// An error of a running simulation; `left` says where its state was saved.
-pub fn of_simulation(error: SimulationError, left: &str) -> PyErr {
+pub fn of_simulation(error: impl Borrow<SimulationError>, left: &str) -> PyErr {
+    let error = error.borrow();
     let message = match left {
         "" => error.to_string(),
         left => format!("{error}; {left}"),
     };
     let (step, time, point, place, cause, advice) = match error {
         SimulationError::Observe(source) => {
-            return match source.downcast::<Raised>() {
-                Ok(raised) => raised.0,
-                Err(source) => match source.downcast::<IoError>() {
-                    Ok(error) => of_io(*error),
-                    Err(source) => plain(&source.to_string()),
-                },
+            if let Some(Raised(raised)) = source.downcast_ref() {
+                return Python::attach(|py| raised.clone_ref(py));
+            }
+            return match source.downcast_ref() {
+                Some(error) => of_io(error),
+                None => plain(&source.to_string()),
             };
         }
         SimulationError::Misfit(error) => return of_engine(error),
@@ -199,12 +206,13 @@ pub fn of_simulation(error: SimulationError, left: &str) -> PyErr {
 }
 
 /// An error of a run.
-pub fn of_run(error: RunError) -> PyErr {
+pub fn of_run(error: impl Borrow<RunError>) -> PyErr {
+    let error = error.borrow();
     match error {
         RunError::Deck(error) => of_deck(error),
         RunError::Model(error) => of_build(error),
         RunError::Io(error) | RunError::Mesh(MeshError::Io(error)) => of_io(error),
-        RunError::Unstable { source, left } => of_simulation(source, &left),
+        RunError::Unstable { source, left } => of_simulation(source, left),
         RunError::Simulation(error) => of_simulation(error, ""),
         RunError::NoResults { .. } | RunError::NoRun { .. } | RunError::Damaged { .. } => {
             output(&error.to_string())

@@ -9,7 +9,7 @@ use numpy::ndarray::ArrayView2;
 use numpy::{PyArray1, PyArray2, PyArrayMethods};
 use pericles_io::{FieldData, read_csv, read_fields};
 use pericles_run::diff::Comparison;
-use pericles_run::{ExportFormat, Results, Selection, export, machine};
+use pericles_run::{ExportFormat, Results, RunError, Selection, export, machine};
 use pyo3::prelude::*;
 
 use crate::arrays::{Block, TableColumn};
@@ -54,7 +54,7 @@ impl OutputFile {
     #[new]
     fn new(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
         let data = py.detach(|| read_fields(&path, machine::memory()));
-        let data = data.map_err(|error| errors::of_run(error.into()))?;
+        let data = data.map_err(|error| errors::of_run(RunError::from(error)))?;
         Ok(Self::of(data))
     }
 
@@ -112,21 +112,33 @@ pub fn compare(py: Python<'_>, a: PathBuf, b: PathBuf, tolerance: f64) -> PyResu
         let made = || {
             let (a, b) = (Results::open(&a)?, Results::open(&b)?);
             let comparison = Comparison::of(&a, &b, tolerance)?;
-            Ok(serde_json::to_string(&comparison)?)
+            Ok::<_, RunError>(serde_json::to_string(&comparison)?)
         };
         made().map_err(errors::of_run)
     })
 }
 
-/// Writes the page of a run; returns what was left out, in sentences.
+/// The words of the formats of exported fields, with the usual names of the files.
 #[pyfunction]
-pub fn write_page(
+pub fn export_formats() -> Vec<(&'static str, &'static str)> {
+    let formats = ExportFormat::ALL.into_iter();
+    formats.map(|one| (one.word(), one.file_name())).collect()
+}
+
+/// Writes the fields of a run in a format; returns what was left out, in sentences.
+#[pyfunction]
+pub fn export_fields(
     py: Python<'_>,
     folder: PathBuf,
+    format: &str,
     path: PathBuf,
     every: Option<NonZeroUsize>,
     fields: Vec<String>,
 ) -> PyResult<Vec<String>> {
+    let format = ExportFormat::ALL
+        .into_iter()
+        .find(|one| one.word() == format);
+    let format = format.ok_or_else(|| errors::plain("there is no such format"))?;
     waiting(py, move || {
         let made = || {
             let results = Results::open(&folder)?;
@@ -135,8 +147,8 @@ pub fn write_page(
                 size: None,
                 fields,
             };
-            let exported = export(&results, ExportFormat::Html, &selection, &path)?;
-            Ok(exported.notes)
+            let exported = export(&results, format, &selection, &path)?;
+            Ok::<_, RunError>(exported.notes)
         };
         made().map_err(errors::of_run)
     })

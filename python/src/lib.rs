@@ -13,6 +13,7 @@ mod files;
 mod model;
 mod recorder;
 mod simulation;
+mod studies;
 mod values;
 
 use pyo3::prelude::*;
@@ -21,19 +22,23 @@ use pyo3::prelude::*;
 mod _pericles {
     use super::*;
     #[pymodule_export]
-    use crate::callback::{Snapshot, field_unit};
+    use crate::callback::{Snapshot, field_components, field_unit};
     #[pymodule_export]
-    use crate::deck::Deck;
+    use crate::deck::{Deck, is_quantity, seconds};
     #[pymodule_export]
     use crate::entry::{after_fork, set_threads, threads};
     #[pymodule_export]
-    use crate::files::{OutputFile, command_line, compare, read_table, write_page};
+    use crate::files::{
+        OutputFile, command_line, compare, export_fields, export_formats, read_table,
+    };
     #[pymodule_export]
     use crate::model::Model;
     #[pymodule_export]
     use crate::recorder::Recording;
     #[pymodule_export]
     use crate::simulation::Simulation;
+    #[pymodule_export]
+    use crate::studies::{Sweep, fit, run_steps};
 
     /// Sets the version.
     #[pymodule_init]

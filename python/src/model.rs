@@ -47,7 +47,19 @@ enum Addition {
     Motion {
         name: String,
         axes: Vec<bool>,
-        functions: Arc<Functions>,
+        course: Course,
+    },
+}
+
+/// The course of a prescribed motion.
+#[derive(Clone)]
+enum Course {
+    Functions(Arc<Functions>),
+    /// Constant displacements or velocities: component c of the k-th point is entry c · points + k.
+    Constant {
+        kind: MotionKind,
+        points: Vec<u32>,
+        values: Arc<Vec<f64>>,
     },
 }
 
@@ -73,25 +85,43 @@ impl Addition {
                 let load = Load::new(points, density, TimeFunction::Constant);
                 conditions.loads.push(load);
             }
-            Self::Motion {
-                name,
-                axes,
-                functions,
-            } => {
-                let (points, dimension) = (functions.selection.points.clone(), functions.dimension);
-                let values = values(functions);
+            Self::Motion { name, axes, course } => {
+                let given: Box<dyn Fn(usize) -> AxisMotion>;
+                let (kind, points);
+                match course {
+                    Course::Functions(functions) => {
+                        kind = match functions.are_rates {
+                            true => MotionKind::Velocity,
+                            false => MotionKind::Displacement,
+                        };
+                        points = functions.selection.points.clone();
+                        let values = values(functions);
+                        given = Box::new(move |_| AxisMotion::Values(values.clone()));
+                    }
+                    Course::Constant {
+                        kind: of_values,
+                        points: on,
+                        values,
+                    } => {
+                        (kind, points) = (of_values, on);
+                        let n = points.len();
+                        given =
+                            Box::new(move |c| AxisMotion::PerPoint(values[c * n..][..n].to_vec()));
+                    }
+                }
                 let along = std::array::from_fn(|c| {
                     let prescribed = axes.get(c).copied().unwrap_or(false);
-                    prescribed.then(|| AxisMotion::Values(values.clone()))
+                    prescribed.then(|| given(c))
                 });
                 let n = discretisation.cloud.len();
                 let motion = PrescribedMotion::along(
                     name,
                     points,
-                    MotionKind::Displacement,
+                    kind,
                     along,
                     TimeFunction::Constant,
-                    &vec![0.0; dimension * n],
+                    // The simulation adds the initial displacement to prescribed velocities.
+                    &vec![0.0; axes.len() * n],
                     n,
                 );
                 conditions.motions.push(motion.map_err(errors::of_engine)?);
@@ -166,6 +196,7 @@ impl Model {
         &self,
         py: Python<'_>,
         functions: Vec<Py<PyAny>>,
+        are_rates: bool,
         selection: Selection,
     ) -> PyResult<Arc<Functions>> {
         let dimension = self.cloud.dimension();
@@ -174,6 +205,7 @@ impl Model {
         let places = places.call_method1("copy", ("C",))?;
         Ok(Arc::new(Functions {
             functions,
+            are_rates,
             places: places.unbind(),
             selection,
             dimension,
@@ -215,6 +247,13 @@ impl Model {
             }
             _ => None,
         };
+        let steps = deck.deck().steps();
+        if !steps.is_empty() {
+            return Err(plain(&format!(
+                "the deck has {} steps ([[step]]), which are runs of their own; run it with pericles.run(deck), and open its steps by `result.steps`",
+                steps.len()
+            )));
+        }
         let source = deck.source.clone();
         let (source, (discretisation, assembled)) = waiting(py, move || {
             let made = built(&source, listed.as_ref(), &sets)?;
@@ -327,7 +366,7 @@ impl Model {
                 self.change(py, |parts| parts.discretisation.conditions.loads.push(load))
             }
             (None, Some(function)) => {
-                let functions = self.functions(py, vec![function], selection)?;
+                let functions = self.functions(py, vec![function], false, selection)?;
                 self.change(py, |parts| parts.additions.push(Addition::Load(functions)))
             }
             (None, None) => Err(plain("a load needs values or a function")),
@@ -335,7 +374,7 @@ impl Model {
     }
 
     /// Prescribes the displacement of points given by user numbers along axes: the displacement and its known time
-    /// derivatives are functions.
+    /// derivatives are functions. If `are_rates`, the first function is the velocity.
     fn add_motion(
         &self,
         py: Python<'_>,
@@ -343,14 +382,34 @@ impl Model {
         numbers: Vec<u32>,
         axes: Vec<bool>,
         functions: Vec<Py<PyAny>>,
+        are_rates: bool,
     ) -> PyResult<()> {
         let selection = Selection::of_numbers(&self.cloud, &numbers);
-        let functions = self.functions(py, functions, selection)?;
-        let addition = Addition::Motion {
-            name,
-            axes,
-            functions,
+        let course = Course::Functions(self.functions(py, functions, are_rates, selection)?);
+        let addition = Addition::Motion { name, axes, course };
+        self.change(py, |parts| parts.additions.push(addition))
+    }
+
+    /// Prescribes constant displacements (m), or velocities (m/s) if `are_rates`, of points given by user numbers along axes.
+    fn add_constant_motion(
+        &self,
+        py: Python<'_>,
+        name: String,
+        numbers: Vec<u32>,
+        axes: Vec<bool>,
+        values: PyReadonlyArray2<'_, f64>,
+        are_rates: bool,
+    ) -> PyResult<()> {
+        let selection = Selection::of_numbers(&self.cloud, &numbers);
+        let course = Course::Constant {
+            kind: match are_rates {
+                true => MotionKind::Velocity,
+                false => MotionKind::Displacement,
+            },
+            values: Arc::new(selection.ordered(&component_major(&values))),
+            points: selection.points,
         };
+        let addition = Addition::Motion { name, axes, course };
         self.change(py, |parts| parts.additions.push(addition))
     }
 

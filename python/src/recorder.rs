@@ -5,8 +5,8 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use numpy::PyArray1;
 use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::{Archive, Checkpointed};
-use pericles_io::observers::HistoryRows;
-use pericles_io::{Cell, in_user_order};
+use pericles_io::in_user_order;
+use pericles_run::KeptTable;
 use pyo3::prelude::*;
 
 use crate::arrays::{TableColumn, view};
@@ -27,17 +27,8 @@ struct Frame {
     values: Vec<Arc<Vec<f64>>>,
 }
 
-/// The rows of the history of a run.
-pub struct Course {
-    rows: HistoryRows,
-    values: Vec<Vec<f64>>,
-}
-
 /// Keeps fields.
 pub struct FieldKeeper(pub Arc<Mutex<Kept>>);
-
-/// Keeps the history.
-pub struct HistoryKeeper(pub Arc<Mutex<Course>>);
 
 fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
     shared.lock().unwrap_or_else(PoisonError::into_inner)
@@ -58,16 +49,6 @@ impl Kept {
         let fields = self.fields.iter();
         let numbers: usize = fields.map(|&field| components(field, self.dimension)).sum();
         8.0 * numbers as f64 * points as f64
-    }
-}
-
-impl Course {
-    /// Keeps rows.
-    pub fn new(rows: HistoryRows) -> Self {
-        Self {
-            values: vec![Vec::new(); rows.columns().len()],
-            rows,
-        }
     }
 }
 
@@ -101,37 +82,11 @@ impl Checkpointed for FieldKeeper {
     }
 }
 
-impl Observer for HistoryKeeper {
-    fn observe(&mut self, snapshot: &Snapshot<'_>) -> Result<(), ObserveError> {
-        let course = &mut *locked(&self.0);
-        let step = snapshot.state().step as f64;
-        let before = course.values[0].partition_point(|&earlier| earlier < step);
-        for (column, cell) in course.values.iter_mut().zip(course.rows.row(snapshot)?) {
-            column.truncate(before);
-            column.push(match cell {
-                Cell::Real(value) => value,
-                Cell::Integer(value) => value as f64,
-            });
-        }
-        Ok(())
-    }
-}
-
-impl Checkpointed for HistoryKeeper {
-    fn save(&self, archive: &mut Archive) {
-        locked(&self.0).rows.save(archive);
-    }
-
-    fn restore(&mut self, archive: &Archive) -> pericles::Result<()> {
-        locked(&self.0).rows.restore(archive)
-    }
-}
-
 /// Results in memory.
 #[pyclass(frozen, module = "pericles._pericles")]
 pub struct Recording {
     pub kept: Arc<Mutex<Kept>>,
-    pub course: Option<Arc<Mutex<Course>>>,
+    pub tables: Vec<KeptTable>,
 }
 
 #[pymethods]
@@ -187,18 +142,20 @@ impl Recording {
         squeezed(view(py, &values, count)?, name).map(Some)
     }
 
-    /// The history: names, units and columns.
-    fn history<'py>(&self, py: Python<'py>) -> Vec<TableColumn<'py>> {
-        let Some(course) = &self.course else {
-            return Vec::new();
-        };
-        let course = locked(course);
-        let columns = course.rows.columns().iter().zip(&course.values);
-        columns
-            .map(|(column, values)| {
-                let array = PyArray1::from_slice(py, values);
-                (column.name().to_owned(), column.unit().to_owned(), array)
-            })
-            .collect()
+    /// Names of the tables.
+    fn tables(&self) -> Vec<String> {
+        self.tables.iter().map(|table| table.name.clone()).collect()
+    }
+
+    /// A table: names, units and columns.
+    fn table<'py>(&self, py: Python<'py>, name: &str) -> Option<Vec<TableColumn<'py>>> {
+        let table = self.tables.iter().find(|table| table.name == name)?;
+        let rows = locked(&table.rows);
+        let columns = rows.columns.iter().zip(&rows.values);
+        let columns = columns.map(|(column, values)| {
+            let array = PyArray1::from_slice(py, values);
+            (column.name().to_owned(), column.unit().to_owned(), array)
+        });
+        Some(columns.collect())
     }
 }

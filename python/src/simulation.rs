@@ -8,15 +8,15 @@ use std::time::Instant;
 use pericles::observe::Schedule;
 use pericles::{Archive, Checkpointed, Control, Interrupt, Outcome};
 use pericles_io::{Container, OutputFolder};
-use pericles_run::{Assembled, Cancel, Ending, Event, Run, Source, history_rows, machine};
+use pericles_run::{Assembled, Cancel, Ending, Event, KeptTable, Run, Source, machine, recorded};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::callback::{Callback, Live, energies, field_named, field_of, squeezed};
+use crate::callback::{Asked, Callback, Live, energies, field_named, field_of, squeezed};
 use crate::entry::{POLL, enter, guarded};
 use crate::errors::{self, plain};
 use crate::model::schedule_of;
-use crate::recorder::{Course, FieldKeeper, HistoryKeeper, Kept, Recording};
+use crate::recorder::{FieldKeeper, Kept, Recording};
 use crate::values::Trouble;
 
 /// The time loop of a simulation.
@@ -41,7 +41,7 @@ pub struct Simulation {
     engine: Mutex<Option<Engine>>,
     live: Arc<Live>,
     trouble: Trouble,
-    recording: (Arc<Mutex<Kept>>, Option<Arc<Mutex<Course>>>),
+    recording: (Arc<Mutex<Kept>>, Vec<KeptTable>),
     folder: Option<PathBuf>,
     warnings: Vec<String>,
     steps: u64,
@@ -61,7 +61,7 @@ const BUSY: &str = "this simulation is running, in another thread or in the call
 impl Simulation {
     /// Makes a simulation of an assembled model.
     pub fn of(
-        mut assembled: Assembled,
+        assembled: Assembled,
         folder: Option<OutputFolder>,
         plan: Plan<'_>,
     ) -> PyResult<Self> {
@@ -74,7 +74,7 @@ impl Simulation {
         errors::check_memory(needed, machine::memory())?;
         let kept = Arc::new(Mutex::new(kept));
         let keeper = Box::new(FieldKeeper(Arc::clone(&kept)));
-        let mut course = None;
+        let mut tables = Vec::new();
         let path = folder.as_ref().map(|folder| folder.path().to_path_buf());
         let engine = match folder {
             Some(folder) => {
@@ -87,15 +87,10 @@ impl Simulation {
             }
             None => {
                 let model = plan.source.model();
-                let exact = assembled.assembly.exact.take();
-                let simulation = assembled.assembly.simulation();
-                let mut simulation = simulation.map_err(errors::of_engine)?;
-                let rows = Course::new(history_rows(model, &simulation, exact));
-                let rows = Arc::new(Mutex::new(rows));
-                let history = Box::new(HistoryKeeper(Arc::clone(&rows)));
-                simulation.observe(model.output.history.schedule, history);
+                let mut simulation;
+                (simulation, tables) =
+                    recorded(model, assembled.assembly).map_err(errors::of_run)?;
                 simulation.observe(plan.schedule, keeper);
-                course = Some(rows);
                 Engine::Memory(Box::new(simulation))
             }
         };
@@ -109,7 +104,7 @@ impl Simulation {
             engine: Mutex::new(Some(engine)),
             live: Arc::default(),
             trouble: plan.trouble,
-            recording: (kept, course),
+            recording: (kept, tables),
             folder: path,
             warnings,
             steps,
@@ -131,7 +126,7 @@ impl Simulation {
 
     /// Runs until the end, or until `until` steps are completed; returns whether the end was reached.
     fn advance(&self, engine: &mut Engine, until: Option<u64>) -> PyResult<bool> {
-        self.live.ask_to_stop(false);
+        self.live.go_on();
         let watch = Watch {
             live: &self.live,
             trouble: &self.trouble,
@@ -172,7 +167,7 @@ impl Watch<'_> {
             self.last.set(Instant::now());
             if let Err(error) = Python::attach(|py| py.check_signals()) {
                 self.raised.set(Some(error));
-                self.live.ask_to_stop(true);
+                self.live.ask_to_stop(Asked::Signal);
             }
         }
         self.live.is_asked() || self.trouble.is_some()
@@ -243,7 +238,7 @@ impl Simulation {
 
     /// Stops the run of another thread after its current step.
     fn stop(&self) {
-        self.live.ask_to_stop(true);
+        self.live.ask_to_stop(Asked::Program);
     }
 
     /// Number of completed steps; also during a run.
@@ -295,10 +290,21 @@ impl Simulation {
         self.with(|engine| Ok(engine.simulation().system().operator().broken_bonds()))
     }
 
-    /// The condition that ended the run.
+    /// Whether the last step or a stop condition of the deck was reached.
+    #[getter]
+    fn is_finished(&self) -> PyResult<bool> {
+        self.with(|engine| {
+            let simulation = engine.simulation();
+            Ok(simulation.state().step >= self.steps || simulation.stop_reason().is_some())
+        })
+    }
+
+    /// The condition of the deck, the callback or the call of `stop` that ended the run.
     #[getter]
     fn stop_reason(&self) -> PyResult<Option<String>> {
-        self.with(|engine| Ok(engine.simulation().stop_reason().map(ToString::to_string)))
+        let of_deck =
+            self.with(|engine| Ok(engine.simulation().stop_reason().map(ToString::to_string)))?;
+        Ok(of_deck.or_else(|| self.live.stopped()))
     }
 
     /// A copy of a field of the current state.
@@ -346,7 +352,7 @@ impl Simulation {
     fn recording(&self) -> Recording {
         Recording {
             kept: Arc::clone(&self.recording.0),
-            course: self.recording.1.clone(),
+            tables: self.recording.1.clone(),
         }
     }
 

@@ -71,12 +71,16 @@ pub struct FunctionValues {
     trouble: Trouble,
     /// The last values, most recent last: (order, bits of t, values).
     kept: Mutex<Vec<Kept>>,
+    /// The last integrals of rates over whole steps, most recent last: (steps, values).
+    integrals: Mutex<Vec<(u64, Arc<Vec<f64>>)>>,
 }
 
 /// Functions with the points that they receive.
 pub struct Functions {
     /// The values and their known time derivatives.
     pub functions: Vec<Py<PyAny>>,
+    /// Whether the first function is the time derivative of the values, which are zero at t = 0.
+    pub are_rates: bool,
     /// Positions of the points in the user's order.
     pub places: Py<PyAny>,
     /// The points.
@@ -98,6 +102,7 @@ impl FunctionValues {
             step,
             trouble,
             kept: Mutex::default(),
+            integrals: Mutex::default(),
         }
     }
 
@@ -120,6 +125,10 @@ impl FunctionValues {
 
     /// The derivative of order `order` at time t.
     fn derivative(&self, py: Python<'_>, order: usize, t: f64) -> PyResult<Vec<f64>> {
+        let order = match (self.given.are_rates, order) {
+            (true, 0) => return self.integral(py, t),
+            (rates, order) => order - usize::from(rates),
+        };
         let known = order.min(self.given.functions.len() - 1);
         let h = self.step.get();
         let mut sum = vec![0.0; self.len()];
@@ -133,31 +142,80 @@ impl FunctionValues {
         Ok(sum)
     }
 
-    fn values(&self, order: usize, t: f64) -> Arc<Vec<f64>> {
-        let key = (order, t.to_bits());
-        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((.., values)) = kept.iter().find(|(o, bits, _)| (*o, *bits) == key) {
-            return Arc::clone(values);
+    /// The integral of the rates from 0 to t, by Simpson's rule over the steps of the run. It does not depend on the order of
+    /// evaluations: a run that continues from a checkpoint has the same values.
+    fn integral(&self, py: Python<'_>, t: f64) -> PyResult<Vec<f64>> {
+        let h = self.step.get();
+        // Times are whole multiples of the step to within rounding.
+        let steps = (t / h + 1e-6).floor().max(0.0) as u64;
+        let known = {
+            let kept = self
+                .integrals
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            let before = kept.iter().filter(|(at, _)| *at <= steps);
+            before.max_by_key(|(at, _)| *at).cloned()
+        };
+        let (mut at, mut sum) = match known {
+            Some((at, values)) => (at, values.to_vec()),
+            None => (0, vec![0.0; self.len()]),
+        };
+        while at < steps {
+            self.add_simpson(py, [at as f64 * h, (at + 1) as f64 * h], &mut sum)?;
+            at += 1;
+            let mut kept = self
+                .integrals
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            if kept.len() == Self::KEPT {
+                kept.remove(0);
+            }
+            kept.push((at, Arc::new(sum.clone())));
         }
-        drop(kept);
+        let start = steps as f64 * h;
+        if t - start > 1e-6 * h {
+            self.add_simpson(py, [start, t], &mut sum)?;
+        }
+        Ok(sum)
+    }
+
+    /// Adds the integral of the rates over an interval by Simpson's rule.
+    fn add_simpson(&self, py: Python<'_>, [a, b]: [f64; 2], sum: &mut [f64]) -> PyResult<()> {
+        for (t, weight) in [(a, 1.0), (0.5 * (a + b), 4.0), (b, 1.0)] {
+            let rates = self.known(py, 1, t)?;
+            for (sum, rate) in sum.iter_mut().zip(&*rates) {
+                *sum += weight * (b - a) / 6.0 * rate;
+            }
+        }
+        Ok(())
+    }
+
+    /// The derivative of order `order` at time t; the last ones are kept.
+    fn known(&self, py: Python<'_>, order: usize, t: f64) -> PyResult<Arc<Vec<f64>>> {
+        let key = (order, t.to_bits());
+        let locked = || self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((.., values)) = locked().iter().find(|(o, bits, _)| (*o, *bits) == key) {
+            return Ok(Arc::clone(values));
+        }
+        let values = Arc::new(self.derivative(py, order, t)?);
+        let mut kept = locked();
+        if kept.len() == Self::KEPT {
+            kept.remove(0);
+        }
+        kept.push((key.0, key.1, Arc::clone(&values)));
+        Ok(values)
+    }
+
+    fn values(&self, order: usize, t: f64) -> Arc<Vec<f64>> {
         // The step of a failed evaluation is undone: what it computes further does not matter.
         let unknown = || Arc::new(vec![f64::NAN; self.len()]);
         if self.trouble.is_some() {
             return unknown();
         }
-        let values = match Python::attach(|py| self.derivative(py, order, t)) {
-            Ok(values) => Arc::new(values),
-            Err(error) => {
-                self.trouble.note(error);
-                return unknown();
-            }
-        };
-        kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
-        if kept.len() == Self::KEPT {
-            kept.remove(0);
-        }
-        kept.push((key.0, key.1, Arc::clone(&values)));
-        values
+        Python::attach(|py| self.known(py, order, t)).unwrap_or_else(|error| {
+            self.trouble.note(error);
+            unknown()
+        })
     }
 }
 

@@ -65,9 +65,20 @@ def test_stop_at_first_breakage(model, out):
     step = simulation.steps_done
     assert 0 < step < simulation.steps and simulation.broken_bonds > 0
     assert simulation.result().info.status == "stopped"
+    assert simulation.stop_reason.startswith("a callback returned STOP at t = ")
     # The same object goes on.
     simulation.step(1)
     assert simulation.steps_done == step + 1
+
+
+def test_conditions_of_the_deck_stop_a_run_in_memory(model):
+    deck = model.deck.with_({"time.stop_when.0": {"condition": "broken_bonds > 0"}})
+    stopped = deck.build()
+    stopped.set_initial(velocity=lambda x: np.c_[4e4 * (x[:, 0] - 0.01), 0 * x[:, 0]])
+    simulation = stopped.simulation().run()
+    info = simulation.result().info
+    assert info.status == "finished" and simulation.steps_done < simulation.steps
+    assert "broken_bonds" in info.stop_reason and info.stop_reason == simulation.stop_reason
 
 
 def test_errors_keep_their_type_and_the_simulation(model):

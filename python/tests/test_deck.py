@@ -175,3 +175,27 @@ def test_checks_and_shows(bar):
     assert "points" in deck._repr_html_() and "<pericles.Deck" in repr(deck)
     bar["body"]["spacing"] = 0
     assert "spacing" in pc.Deck.from_dict(bar)._repr_html_()
+
+
+def test_decks_are_printed_as_toml(bar):
+    deck = pc.Deck.from_dict(bar)
+    assert str(deck) == deck.to_toml() and pc.Deck.from_toml(str(deck)).values() == deck.values()
+    assert repr(deck).startswith("<pericles.Deck")
+
+
+def test_errors_have_one_prefix(bar):
+    """Neither the class nor the program puts `error:` in front of a message."""
+    bar["body"]["spacing"] = "1 kg"
+    wrong = pc.Deck.from_dict(bar)
+    wrong.write("wrong.toml")
+    calls = [
+        wrong.build, wrong.check, lambda: pc.modes("wrong.toml"), lambda: pc.mesh("no.msh"), lambda: pc.reproduce("none"),
+        lambda: pc.open("nowhere"), lambda: pc.Deck.read("no.toml"), lambda: pc.geodesics("cube(0)", 1.0),
+        lambda: pc.check({**bar, "body": {"shape": "bar"}}),
+    ]
+    for call in calls:
+        with pytest.raises(pc.PericlesError) as caught:
+            call()
+        message = str(caught.value)
+        assert "error:" not in message.lower() and message.strip() == message and message, message
+        assert type(caught.value).__module__ == "pericles"

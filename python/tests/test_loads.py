@@ -105,7 +105,7 @@ def test_prescribed_motion_by_functions_and_expressions():
     assert (moved[fixed.numbers("left"), 0] == 0).all() and moved[fixed.numbers("left"), 1].any()
     assert moved[fixed.numbers("right"), 0] == pytest.approx(2.0 * 4e-6, rel=1e-12)
     assert moved[[105, 106], 1].tolist() == [0.0, 1e-9] and moved[105, 0] != 0
-    for wrong in ({}, {"velocity": u}, {"displacement": [0]}, {"displacement": [0, 0], "velocity": u}):
+    for wrong in ({}, {"displacement": [0]}, {"velocity": 2.0}, {"displacement": [0, 0], "velocity": u}):
         with pytest.raises(pc.PericlesError):
             fixed.prescribe("all", **wrong)
     with pytest.raises(pc.PericlesError, match="axes"):
@@ -113,6 +113,78 @@ def test_prescribed_motion_by_functions_and_expressions():
     with pytest.raises(pc.DeckError):
         model.prescribe("left", displacement=u)
         model.simulation()
+
+
+def test_prescribed_velocities_of_all_forms_agree():
+    """A function, an array, a list and a text of the same velocity; the points start from their initial displacement."""
+    deck = changed(PLATE, time={"end": "2 us", "dt": "20 ns"}, initial=[{"displacement": ["1 nm", 0]}])
+    values = np.tile([5.0, 0.0], (10, 1))
+    forms = {
+        "list": lambda m: m.prescribe("left", velocity=["5 m/s", None]),
+        "text": lambda m: m.prescribe("left", velocity="5 m/s", axes="x"),
+        "number": lambda m: m.prescribe("left", velocity=5, axes="x"),
+        "array": lambda m: m.prescribe("left", velocity=values, axes="x"),
+        "function": lambda m: m.prescribe("left", velocity=lambda t, x: values, axes="x"),
+    }
+    moved = {name: run(deck, act) for name, act in forms.items()}
+    left = pc.Deck.from_dict(deck).build().numbers("left")
+    for name, u in moved.items():
+        assert u[left, 0] == pytest.approx(1e-9 + 5 * 2e-6, rel=1e-12), name
+        assert relative(u, moved["list"]) < 1e-12, name
+    with pytest.raises(pc.PericlesError, match="give axes"):
+        pc.Deck.from_dict(deck).build().prescribe("left", velocity="5 m/s")
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_a_velocity_function_equals_the_integral(scheme):
+    deck = changed(PLATE, time={"scheme": scheme, "end": "4 us", "dt": "40 ns"})
+    a, w = 1e-6, 1e6
+    expected = run(deck, lambda m: m.prescribe("left", displacement=[f"{a} * (1 - cos({w} * t))", "0"]))
+    found = run(deck, lambda m: m.prescribe("left", velocity=lambda t, x: [a * w * np.sin(w * t), 0]))
+    # Simpson's rule over 40 ns has the relative error (w dt)^4 / 2880, 1e-9; accelerations are differences of second order.
+    assert relative(found, expected) < (1e-8 if scheme == "velocity-verlet" else 1e-3)
+    # A cubic is integrated without an error.
+    cubic = run(deck, lambda m: m.prescribe("left", velocity=lambda t, x: [t**3 * 1e18, 0]))
+    left = pc.Deck.from_dict(deck).build().numbers("left")
+    assert cubic[left, 0] == pytest.approx(1e18 * (4e-6) ** 4 / 4, rel=1e-12)
+
+
+def test_a_velocity_function_goes_on_from_a_checkpoint():
+    model = pc.Deck.from_dict(changed(PLATE, time={"dt": "40 ns"})).build()
+    model.prescribe("left", velocity=lambda t, x: [np.cos(1e6 * t), 0])
+    whole = model.simulation(keep=[]).run().field("displacement")
+    first = model.simulation(keep=[])
+    first.step(37)
+    first.save("c.chk")
+    second = model.simulation(keep=[])
+    second.load("c.chk")
+    assert np.array_equal(second.run().field("displacement"), whole)
+
+
+def test_tractions_of_all_forms_agree():
+    """A traction of 1 MPa on the right edge of a plate of 10 mm with the thickness 1 m in 10 cells of 1 mm: 1 GN/m³."""
+    expected = run(PLATE, lambda m: m.load("right", body_force=[1e9, 0]))
+    forms = [
+        {"traction": ["1 MPa", 0]},
+        {"traction": [1e6, None]},
+        {"traction": ["1e6 + 0 * t", "0"]},
+        {"traction": np.tile([1e6, 0.0], (10, 1)), "area": 0.01},
+        {"traction": lambda t, x: [1e6, 0], "area": "100 cm2"},
+        {"traction": ["0.5 MPa", 0], "area": 0.02},
+    ]
+    for form in forms:
+        assert relative(run(PLATE, lambda m: m.load("right", **form)), expected) < 1e-12, form
+    model = pc.Deck.from_dict(PLATE).build()
+    for wrong, says in [
+        ({}, "body_force or traction"),
+        ({"traction": [1, 0], "body_force": [1, 0]}, "one of them"),
+        ({"traction": lambda t, x: [1e6, 0]}, "needs the loaded area"),
+        ({"body_force": [1, 0], "area": 1}, "belongs to a traction"),
+        ({"traction": ["1 kg", 0]}, "traction"),
+        ({"traction": np.ones((10, 2)), "area": "1 m"}, "area"),
+    ]:
+        with pytest.raises(pc.PericlesError, match=says):
+            model.load("right", **wrong)
 
 
 class Fragile:

@@ -21,14 +21,17 @@ pub(crate) fn export(args: &ExportArgs) -> Result<Exit, CliError> {
             folder: args.dir.clone(),
         });
     }
-    let (format, name) = match args.to {
-        args::ExportFormat::Exodus => (ExportFormat::Exodus, "fields.exo"),
-        args::ExportFormat::Vtkhdf => (ExportFormat::VtkHdf, "fields.vtkhdf"),
-        args::ExportFormat::Csv => (ExportFormat::Csv, "fields-csv"),
-        args::ExportFormat::Npz => (ExportFormat::Npz, "fields.npz"),
-        args::ExportFormat::Html => (ExportFormat::Html, "fields.html"),
+    let format = match args.to {
+        args::ExportFormat::Exodus => ExportFormat::Exodus,
+        args::ExportFormat::Vtkhdf => ExportFormat::VtkHdf,
+        args::ExportFormat::Csv => ExportFormat::Csv,
+        args::ExportFormat::Npz => ExportFormat::Npz,
+        args::ExportFormat::Html => ExportFormat::Html,
     };
-    let path = args.out.clone().unwrap_or_else(|| args.dir.join(name));
+    let path = args
+        .out
+        .clone()
+        .unwrap_or_else(|| args.dir.join(format.file_name()));
     if path.symlink_metadata().is_ok() {
         return Err(CliError::FileExists { path });
     }

@@ -183,6 +183,16 @@ pub fn metres(text: &str) -> Option<f64> {
     measured(text, Quantity::Length)
 }
 
+/// Returns whether a text is a number with a unit as in decks, or a plain number.
+///
+/// ```
+/// assert!(pericles_deck::is_quantity("5 m/s"));
+/// assert!(!pericles_deck::is_quantity("5 * t"));
+/// ```
+pub fn is_quantity(text: &str) -> bool {
+    units::parse(text).is_ok()
+}
+
 /// Returns the SI unit of a unit as in decks and the factor that converts to it. None for other texts and for temperatures
 /// with their own zero.
 ///

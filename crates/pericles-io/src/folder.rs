@@ -47,8 +47,8 @@ impl OutputFolder {
     /// Creates the folder `path` and missing parents.
     ///
     /// An existing folder is rejected unless `force` is set; with `force`, the files listed in the manifest
-    /// of an earlier run are removed and all other files are kept. Symbolic links with their names are removed, not
-    /// their targets. A folder that is neither empty nor the output of a run is always rejected.
+    /// of an earlier run, and subfolders without other files, are removed; all other files are kept. Symbolic links with
+    /// their names are removed, not their targets. A folder that is neither empty nor the output of a run is always rejected.
     pub fn create(path: impl Into<PathBuf>, force: bool) -> Result<Self, IoError> {
         let path = path.into();
         create_parents(&path)?;
@@ -225,6 +225,10 @@ impl OutputFolder {
                 if entry.is_file && manifest.has(&format!("{prefix}{name}")) {
                     remove(&place.join(&entry.name))?;
                 }
+            }
+            if !prefix.is_empty() {
+                // A folder with other files remains.
+                let _ = fs::remove_dir(&place);
             }
         }
         // The manifest goes last: if the process is killed before, the remaining files are still recorded.

@@ -37,6 +37,33 @@ pub enum ExportFormat {
     Html,
 }
 
+impl ExportFormat {
+    /// All formats.
+    pub const ALL: [Self; 5] = [Self::Exodus, Self::VtkHdf, Self::Csv, Self::Npz, Self::Html];
+
+    /// Returns the word that selects the format.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Exodus => "exodus",
+            Self::VtkHdf => "vtkhdf",
+            Self::Csv => "csv",
+            Self::Npz => "npz",
+            Self::Html => "html",
+        }
+    }
+
+    /// Returns the usual name of the exported file or folder.
+    pub fn file_name(self) -> &'static str {
+        match self {
+            Self::Exodus => "fields.exo",
+            Self::VtkHdf => "fields.vtkhdf",
+            Self::Csv => "fields-csv",
+            Self::Npz => "fields.npz",
+            Self::Html => "fields.html",
+        }
+    }
+}
+
 /// The outputs and fields to export.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Selection {

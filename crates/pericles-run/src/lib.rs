@@ -116,7 +116,7 @@ pub use heat::{HeatBalance, HeatFacts, Inflow};
 pub use inputs::Inputs;
 pub use json::write_json;
 pub use mirror::MirrorError;
-pub use observers::{body_shape, history_rows, picture_of, result_body};
+pub use observers::{KeptTable, body_shape, picture_of, recorded, result_body};
 pub use open_facts::{OpenFacts, ReflectionFacts};
 pub use origin::{InitialState, Origin};
 pub use processes::shared_folder;

@@ -3,37 +3,38 @@
 mod body_shape;
 mod impactors;
 mod result_body;
+mod tables;
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
 use pericles::Simulation;
 use pericles::family::Crack;
-use pericles::observe::{CrackTracker, Schedule};
+use pericles::observe::Schedule;
 use pericles::space::PointCloud;
 use pericles_deck::{
     FieldFormat, Model, Picture, PictureColours, PictureFormat, PictureLook, Precision, TimeStep,
 };
 use pericles_io::observers::{
-    CellMesh, Cracks, EnergyBoundColumns, ErrorColumns, FieldSeries, ForceDisplacement,
-    FragmentCourse, History, HistoryRows, PictureOf, Pictures, ProbeSignals, Profile,
-    ReactionSignals, ResultFile, ResultFormat, SignalTable, Signals, SurfaceCourse,
+    CellMesh, FieldSeries, History, PictureOf, Pictures, Profile, ResultFile, ResultFormat,
+    TableTarget,
 };
 use pericles_io::{ColourMap, OutputFolder, PictureStyle, Print};
 use pericles_manifold::surface::Surface;
-use pericles_manifold::{EnergyInequality, SurfaceMeasure};
 
-use crate::build::{Assembly, ExactReference, Meshes, Sets, gathered, is_on_grid};
+use crate::build::{Assembly, Meshes, Sets, gathered, is_on_grid};
 use crate::checkpoint;
 use crate::error::RunError;
 use crate::origin;
-use crate::signals::{QuantitySignals, breaks_by_events, history_signals, scales_loads};
+use crate::signals::{breaks_by_events, scales_loads};
 
-use self::impactors::add_impactors;
+use self::impactors::add_impactor_surfaces;
+use self::tables::{TableParts, add_tables};
 
 pub use self::body_shape::body_shape;
 pub(crate) use self::result_body::field_selection;
 pub use self::result_body::result_body;
+pub use self::tables::{KeptTable, recorded};
 
 /// A simulation with the observers of a model.
 pub(crate) struct Observed {
@@ -51,28 +52,7 @@ pub(crate) fn observed(
     mut assembly: Assembly,
     folder: &OutputFolder,
 ) -> Result<Observed, RunError> {
-    let output = &model.output;
-    let dimension = assembly.cloud.dimension();
-    let can_break = assembly.system.operator().can_break();
-    let tables = signal_tables(&assembly);
-    let loaded: Vec<String> = model.loads.iter().map(|load| load.set.clone()).collect();
-    let acts = !assembly.system.motions().is_empty() || !loaded.is_empty();
-    let curve = (model.time.scheme.is_static() && acts).then(|| {
-        let curve = ForceDisplacement::new(
-            folder.file("force_displacement.csv"),
-            folder.file("force_displacement.png"),
-            model.title.clone().unwrap_or_default(),
-            &assembly.system,
-            &loaded,
-        );
-        match breaks_by_events(model) {
-            true => curve.event_driven(),
-            false => curve,
-        }
-    });
-    let cracks = assembly.cracks.clone();
-    let exact = assembly.exact.take();
-    let surface = assembly.surface.clone();
+    let parts = TableParts::take(&mut assembly);
     let body = FieldBody::of(&assembly, needs_whole_body(model, &assembly));
     let cloud = Arc::clone(&body.cloud);
     let mut simulation = assembly.simulation()?.of_whole(body.whole());
@@ -80,46 +60,15 @@ pub(crate) fn observed(
         "run.json",
         "report.html",
         "fields.html",
-        "history.csv",
         "checkpoints/step-*.chk",
     ]
     .map(String::from)
     .to_vec();
     names.extend([checkpoint::FAILED, origin::START].map(|name| format!("checkpoints/{name}")));
-
-    let rows = history_rows(model, &simulation, exact);
-    let history = History::new(folder.file("history.csv"), rows);
-    let history = Arc::new(Mutex::new(history));
-    simulation.observe(output.history.schedule, Box::new(Arc::clone(&history)));
-    names.extend(add_impactors(model, folder, &mut simulation)?);
-    for (name, key, signals) in tables {
-        names.push(name.into());
-        let table = SignalTable::new(folder.file(name), key, signals);
-        simulation.observe(output.history.schedule, Box::new(table));
-    }
-    if let Some(curve) = curve {
-        names.extend(["force_displacement.csv", "force_displacement.png"].map(String::from));
-        simulation.observe(Schedule::Every(1), Box::new(curve));
-    }
-    if can_break && !cracks.is_empty() {
-        names.push("cracks.csv".into());
-        let tracker = CrackTracker::new(&cloud, cracks, output.cracks.threshold)?;
-        let cracks = Cracks::new(folder.file("cracks.csv"), tracker, dimension);
-        simulation.observe(output.cracks.schedule, Box::new(cracks));
-    }
-    if can_break && output.fragments.schedule != Schedule::Never {
-        names.push("fragments.csv".into());
-        let smallest = output.fragments.smallest;
-        let course =
-            FragmentCourse::new(folder.file("fragments.csv"), smallest, cloud.body_units());
-        simulation.observe(output.fragments.schedule, Box::new(course));
-    }
-    if let Some(surface) = &surface {
-        names.push("surface.csv".into());
-        let measure = SurfaceMeasure::new(surface.clone());
-        let course = SurfaceCourse::new(folder.file("surface.csv"), measure);
-        simulation.observe(output.history.schedule, Box::new(course));
-    }
+    let target = |name: &str| TableTarget::File(folder.file(name));
+    let (history, tables) = add_tables(model, parts, &cloud, &target, &mut simulation)?;
+    names.extend(tables);
+    names.extend(add_impactor_surfaces(model, folder, &mut simulation)?);
     names.extend(add_fields(model, folder, &body, &mut simulation)?);
     names.extend(add_profiles(model, folder, &cloud, &mut simulation)?);
     names.extend(add_pictures(model, folder, &body, &mut simulation)?);
@@ -128,55 +77,6 @@ pub(crate) fn observed(
         simulation,
         history,
     })
-}
-
-/// Returns the tables of signals: file, name of the length in checkpoints, content.
-fn signal_tables(assembly: &Assembly) -> Vec<(&'static str, &'static str, Box<dyn Signals>)> {
-    let mut tables: Vec<(_, _, Box<dyn Signals>)> = Vec::new();
-    let probes = assembly.probes.clone();
-    if !assembly.system.motions().is_empty() {
-        let reactions = ReactionSignals::new(&assembly.system);
-        tables.push(("reactions.csv", "observer/reactions", Box::new(reactions)));
-    }
-    if !probes.is_empty() {
-        let dimension = assembly.cloud.dimension();
-        let probes = ProbeSignals { probes, dimension };
-        tables.push(("probes.csv", "observer/probes", Box::new(probes)));
-    }
-    if assembly.signals.has_quantities() {
-        let quantities = QuantitySignals(Arc::clone(&assembly.signals));
-        let quantities = Box::new(quantities);
-        tables.push(("quantities.csv", "observer/quantities", quantities));
-    }
-    tables
-}
-
-/// Returns the rows of the history that a model requests; `exact` is the exact solution of its assembly, if it has one.
-pub fn history_rows(
-    model: &Model,
-    simulation: &Simulation,
-    exact: Option<ExactReference>,
-) -> HistoryRows {
-    let (output, cloud) = (&model.output, simulation.system().cloud());
-    let [of_scheme, of_state] =
-        history_signals(model, simulation.system(), simulation.integrator());
-    let mut rows = HistoryRows::new(cloud);
-    for signals in of_scheme {
-        rows = rows.with_signals(signals);
-    }
-    if let Some(ExactReference { solution, points }) = exact {
-        rows = rows.with(ErrorColumns::new(solution, points));
-    }
-    if let Some(time) = output.energy_bound {
-        rows = rows.with(EnergyBoundColumns {
-            inequality: EnergyInequality::new(1.0 / time),
-            units: cloud.body_units(),
-        });
-    }
-    for signals in of_state {
-        rows = rows.with_signals(signals);
-    }
-    rows
 }
 
 /// Returns a picture requested by a model.

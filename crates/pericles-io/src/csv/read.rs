@@ -7,7 +7,7 @@ use super::Column;
 use crate::IoError;
 
 /// The content of a CSV table.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct CsvData {
     /// Names and units of the columns.
     pub columns: Vec<Column>,

@@ -1,6 +1,5 @@
 //! Crack tips over time.
 
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use pericles::observe::{
@@ -9,7 +8,7 @@ use pericles::observe::{
 use pericles::space::PointCloud;
 
 use super::signals::Signals;
-use super::table::{AXES, ObserverTable, step_and_time, whole};
+use super::table::{AXES, ObserverTable, TableTarget, step_and_time, whole};
 use crate::csv::{Cell, Column};
 
 /// Tip of the crack that grows from each pre-crack: `cracks.csv`.
@@ -26,7 +25,7 @@ pub struct Cracks {
 
 impl Cracks {
     /// Creates the observer from a tracker, for a body of the given dimension.
-    pub fn new(path: impl Into<PathBuf>, tracker: CrackTracker, dimension: usize) -> Self {
+    pub fn new(table: impl Into<TableTarget>, tracker: CrackTracker, dimension: usize) -> Self {
         let mut columns = step_and_time();
         columns.push(Column::integer("crack"));
         for axis in &AXES[..dimension] {
@@ -35,7 +34,7 @@ impl Cracks {
         columns.push(Column::real("advance", "m"));
         columns.push(Column::integer("points"));
         Self {
-            table: ObserverTable::new(path.into(), "observer/cracks", columns),
+            table: ObserverTable::new(table.into(), "observer/cracks", columns),
             tracker,
             dimension,
         }

@@ -1,11 +1,9 @@
 //! Force–displacement curve of static states.
 
-use std::path::PathBuf;
-
 use pericles::System;
 use pericles::observe::{ObserveError, Observer, Snapshot};
 
-use super::table::{AXES, ObserverTable, step_and_time, whole};
+use super::table::{AXES, ObserverTable, TableTarget, step_and_time, whole};
 use crate::csv::{Cell, Column, read_csv};
 use crate::error::IoError;
 use crate::picture::{Axis, Curve, LineChart};
@@ -21,8 +19,6 @@ use crate::picture::{Axis, Curve, LineChart};
 /// path in grey.
 pub struct ForceDisplacement {
     table: ObserverTable,
-    path: PathBuf,
-    chart: PathBuf,
     title: String,
     pairs: Vec<Pair>,
     unit: String,
@@ -48,15 +44,13 @@ enum Acting {
 
 impl ForceDisplacement {
     /// Creates the observer for a system; `loaded` are the names of the sets on which its loads act, in the order of
-    /// the loads, and `table` and `chart` are file paths.
+    /// the loads. The chart is drawn beside a table in a file, with the ending `png`.
     pub fn new(
-        table: impl Into<PathBuf>,
-        chart: impl Into<PathBuf>,
+        table: impl Into<TableTarget>,
         title: impl Into<String>,
         system: &System,
         loaded: &[String],
     ) -> Self {
-        let path = table.into();
         let pairs = pairs(system, loaded);
         let unit = system.cloud().body_units().unit("N");
         let mut columns = step_and_time();
@@ -66,9 +60,7 @@ impl ForceDisplacement {
             columns.push(Column::real(force, unit.as_str()));
         }
         Self {
-            table: ObserverTable::new(path.clone(), "observer/force_displacement", columns),
-            path,
-            chart: chart.into(),
+            table: ObserverTable::new(table.into(), "observer/force_displacement", columns),
             title: title.into(),
             pairs,
             unit,
@@ -85,10 +77,10 @@ impl ForceDisplacement {
 
     /// Draws the chart from the table.
     fn draw(&self) -> Result<(), IoError> {
-        if !self.table.is_open() {
+        let Some(path) = self.table.written() else {
             return Ok(());
-        }
-        let table = read_csv(&self.path)?;
+        };
+        let table = read_csv(path)?;
         let column = |name: &str| table.column(name).unwrap_or_default();
         let axes = (
             Axis::new("displacement", "m"),
@@ -119,7 +111,7 @@ impl ForceDisplacement {
         }
         match curves {
             0 => Ok(()),
-            _ => chart.write(&self.chart),
+            _ => chart.write(path.with_extension("png")),
         }
     }
 }
@@ -208,7 +200,7 @@ impl Observer for ForceDisplacement {
 pericles::saved! {
     impl Checkpointed for ForceDisplacement {
         table: part,
-        path, chart, title, pairs, unit, is_event_driven: fixed,
+        title, pairs, unit, is_event_driven: fixed,
     }
 }
 

@@ -1,11 +1,9 @@
 //! Fragments over time.
 
-use std::path::PathBuf;
-
 use pericles::observe::{Fragments, ObserveError, Observer, Snapshot};
 use pericles::units::BodyUnits;
 
-use super::table::{ObserverTable, step_and_time, whole};
+use super::table::{ObserverTable, TableTarget, step_and_time, whole};
 use crate::csv::Column;
 
 /// Fragments, the pieces connected by intact bonds: `fragments.csv`.
@@ -20,7 +18,7 @@ pub struct FragmentCourse {
 impl FragmentCourse {
     /// Creates the observer; a piece with at least the fraction `smallest` of the body's mass counts as a
     /// fragment.
-    pub fn new(path: impl Into<PathBuf>, smallest: f64, units: BodyUnits) -> Self {
+    pub fn new(table: impl Into<TableTarget>, smallest: f64, units: BodyUnits) -> Self {
         let mass = || units.unit("kg");
         let mut columns = step_and_time();
         columns.push(Column::integer("fragments"));
@@ -30,7 +28,7 @@ impl FragmentCourse {
         columns.push(Column::integer("single_points"));
         columns.push(Column::real("single_mass", mass()));
         Self {
-            table: ObserverTable::new(path.into(), "observer/fragments", columns),
+            table: ObserverTable::new(table.into(), "observer/fragments", columns),
             smallest,
         }
     }

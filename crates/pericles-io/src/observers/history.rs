@@ -1,14 +1,12 @@
 //! Energy balance over time.
 
-use std::path::PathBuf;
-
 use pericles::observe::{ObserveError, Observer, Snapshot};
 use pericles::space::PointCloud;
 use pericles::{Archive, Checkpointed, Result};
 
 use super::HistoryColumns;
 use super::signals::{EnergySignals, Signals};
-use super::table::{ObserverTable, step_and_time, whole};
+use super::table::{ObserverTable, TableTarget, step_and_time, whole};
 use crate::csv::{Cell, Column};
 
 /// Signals as columns of a history; they have no state.
@@ -102,10 +100,10 @@ pub struct History {
 
 impl History {
     /// Creates a history with the given rows.
-    pub fn new(path: impl Into<PathBuf>, rows: HistoryRows) -> Self {
+    pub fn new(table: impl Into<TableTarget>, rows: HistoryRows) -> Self {
         let columns = rows.columns().to_vec();
         Self {
-            table: ObserverTable::new(path.into(), "observer/history", columns),
+            table: ObserverTable::new(table.into(), "observer/history", columns),
             rows,
             largest_balance: 0.0,
         }

@@ -102,6 +102,7 @@ pub use result_file::{RecordedFields, ResultFile, ResultFormat};
 pub use rigid::{RigidMesh, impactors};
 pub use signals::{EnergySignals, ProbeSignals, ReactionSignals, SignalTable, Signals, TimeSignal};
 pub use surface::SurfaceCourse;
+pub use table::TableTarget;
 
 #[cfg(test)]
 mod tests;

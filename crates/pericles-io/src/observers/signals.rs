@@ -3,14 +3,12 @@
 //! A source computes scalars from a state alone. Tables write them, and derived quantities and stop conditions read
 //! them by the names of their columns, so that a scalar has one name and one definition.
 
-use std::path::PathBuf;
-
 use pericles::System;
 use pericles::boundary::PrescribedMotion;
 use pericles::observe::{ObserveError, Observer, Probe, ProbeReading, Snapshot};
 use pericles::units::BodyUnits;
 
-use super::table::{AXES, ObserverTable, step_and_time, whole};
+use super::table::{AXES, ObserverTable, TableTarget, step_and_time, whole};
 use crate::csv::{Cell, Column};
 
 /// Scalars of a state.
@@ -44,13 +42,13 @@ pub struct SignalTable {
 impl SignalTable {
     /// Creates the table of signals; `key` is the name of its length in checkpoints.
     pub fn new(
-        path: impl Into<PathBuf>,
+        table: impl Into<TableTarget>,
         key: &'static str,
         signals: impl Signals + 'static,
     ) -> Self {
         let columns = [step_and_time(), signals.columns()].concat();
         Self {
-            table: ObserverTable::new(path.into(), key, columns),
+            table: ObserverTable::new(table.into(), key, columns),
             signals: Box::new(signals),
         }
     }

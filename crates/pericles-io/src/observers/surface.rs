@@ -1,11 +1,9 @@
 //! Measures of a surface over time.
 
-use std::path::PathBuf;
-
 use pericles::observe::{ObserveError, Observer, Snapshot};
 use pericles_manifold::{EnergyBound, SurfaceMeasure};
 
-use super::table::{AXES, ObserverTable, step_and_time, whole};
+use super::table::{AXES, ObserverTable, TableTarget, step_and_time, whole};
 use crate::csv::{Cell, Column};
 
 const KEY: &str = "observer/surface/bound";
@@ -23,7 +21,7 @@ pub struct SurfaceCourse {
 
 impl SurfaceCourse {
     /// Creates the observer of a surface.
-    pub fn new(path: impl Into<PathBuf>, measure: SurfaceMeasure) -> Self {
+    pub fn new(table: impl Into<TableTarget>, measure: SurfaceMeasure) -> Self {
         let mut columns = step_and_time();
         columns.push(Column::real("stretch", ""));
         columns.push(Column::real("bound_margin", "J^0.5"));
@@ -37,7 +35,7 @@ impl SurfaceCourse {
         columns.push(Column::integer("inverted_triangles"));
         columns.push(Column::integer("overstretched_edges"));
         Self {
-            table: ObserverTable::new(path.into(), "observer/surface", columns),
+            table: ObserverTable::new(table.into(), "observer/surface", columns),
             measure,
             bound: EnergyBound::default(),
         }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use pericles::boundary::{MotionKind, PrescribedMotion, TimeFunction};
 use pericles::family::{BondList, Crack, EndRule, VolumeCorrection};
@@ -18,7 +18,7 @@ use pericles_manifold::EnergyInequality;
 use pericles_waves::exact::LineSolution;
 
 use super::*;
-use crate::{IoError, read_csv};
+use crate::{CsvData, IoError, read_csv};
 
 const STEPS: u64 = 60;
 
@@ -152,6 +152,44 @@ fn whole_run(folder: &Path) -> Simulation {
     let outcome = simulation.run(|_| Control::Continue).unwrap();
     assert_eq!(outcome, Outcome::Finished);
     simulation
+}
+
+#[test]
+fn tables_in_memory_equal_those_of_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut run = simulation(folder.path());
+    let rows: Arc<Mutex<CsvData>> = Arc::default();
+    let probe = Probe {
+        name: "corner".into(),
+        points: vec![0],
+    };
+    let signals = ProbeSignals {
+        probes: vec![probe],
+        dimension: 2,
+    };
+    let target = TableTarget::Memory(Arc::clone(&rows));
+    let kept = SignalTable::new(target, "observer/kept", signals);
+    run.observe(Schedule::Every(5), Box::new(kept));
+    let outcome = run.run(|run| match run.state().step {
+        30 => Control::Stop,
+        _ => Control::Continue,
+    });
+    assert_eq!(outcome.unwrap(), Outcome::Stopped);
+    let mut archive = Archive::default();
+    run.save(&mut archive);
+    run.run(|_| Control::Continue).unwrap();
+    let of_file = read_csv(folder.path().join("probes.csv")).unwrap();
+    assert!(of_file.rows() as u64 == STEPS / 5 + 1);
+    assert_eq!(rows.lock().unwrap().values, of_file.values);
+    let names = |table: &CsvData| -> Vec<String> {
+        let columns = table.columns.iter();
+        columns.map(|column| column.name().to_owned()).collect()
+    };
+    assert_eq!(names(&rows.lock().unwrap()), names(&of_file));
+    // A restored run computes its later rows again.
+    run.restore(&archive).unwrap();
+    run.run(|_| Control::Continue).unwrap();
+    assert_eq!(rows.lock().unwrap().values, of_file.values);
 }
 
 #[test]

@@ -104,7 +104,9 @@ pub fn assemble(
     discretisation.conditions.add_loads(&mut system)?;
     let continues = resources.start.continues();
     assembler.add_motions(&mut system, place, &state, continues)?;
-    discretisation.conditions.add_motions(&mut system)?;
+    discretisation
+        .conditions
+        .add_motions(&mut system, &state.u)?;
     assembler.check_conditions(&system, cloud, &mut warnings);
     warnings.extend(assembler.check_idle_keys(&system));
     warnings.extend(assembler.check_dissipation(&system));

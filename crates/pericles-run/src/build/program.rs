@@ -65,10 +65,24 @@ impl Conditions {
         Ok(())
     }
 
-    /// Adds the prescribed motions.
-    pub(super) fn add_motions(&self, system: &mut System) -> Result<(), BuildError> {
+    /// Adds the prescribed motions to a body with the initial displacement `u`.
+    pub(super) fn add_motions(&self, system: &mut System, u: &[f64]) -> Result<(), BuildError> {
         for motion in &self.motions {
-            let added = system.add_motion(motion.clone());
+            let PrescribedMotion {
+                name,
+                points,
+                kind,
+                along,
+                function,
+                until,
+                ..
+            } = motion.clone();
+            let n = system.points();
+            let started = PrescribedMotion::along(name, points, kind, along, function, u, n);
+            let added = started.and_then(|mut started| {
+                started.until = until;
+                system.add_motion(started)
+            });
             added.map_err(|error| at("constraint", error))?;
         }
         Ok(())

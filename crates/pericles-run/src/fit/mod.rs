@@ -27,7 +27,7 @@ use serde::{Deserialize, Serialize};
 
 use self::curve::{Measured, Sampled};
 use self::least_squares::{Control, Kind, Range, minimise};
-pub use self::outcome::Outcome;
+pub use self::outcome::{FittedValue, Outcome};
 use self::parameter::Parameter;
 pub use self::parameter::Wanted;
 use crate::cancel::Cancel;
@@ -122,10 +122,10 @@ impl Plan {
             let reason = format!("key {} repeats {}", k + 1, twice.key);
             return Err(RunError::NoFit { reason });
         }
-        let least = 2 * parameters.len() + 2;
+        let least = 3 * parameters.len() + 2;
         if question.runs < least {
             let reason = format!(
-                "{} runs are too few for {} key(s): the derivatives at the start and at the end of one step need {least}",
+                "{} runs are too few for {} key(s): one step with the derivatives at its ends needs {least}",
                 question.runs,
                 parameters.len()
             );

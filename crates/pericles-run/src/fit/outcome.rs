@@ -15,7 +15,7 @@ use crate::units::{percent, quantity};
 
 /// The result of a fit.
 pub struct Outcome {
-    values: Vec<Value>,
+    values: Vec<FittedValue>,
     measured: Measured,
     /// The curve of the deck as given, and the fitted one, at the measured points.
     curves: [Vec<f64>; 2],
@@ -27,17 +27,23 @@ pub struct Outcome {
     runs: usize,
 }
 
-/// The value of a key.
-struct Value {
-    key: String,
-    start: f64,
-    low: f64,
-    high: f64,
-    value: f64,
+/// The fitted value of a key, in SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedValue {
+    /// The key.
+    pub key: String,
+    /// The value of the deck.
+    pub start: f64,
+    /// The lower bound.
+    pub low: f64,
+    /// The upper bound.
+    pub high: f64,
+    /// The fitted value.
+    pub value: f64,
     /// Standard error; NaN if the curve does not determine the value.
-    error: f64,
+    pub error: f64,
     /// Half of the 95 % confidence interval.
-    half: f64,
+    pub half: f64,
 }
 
 impl Outcome {
@@ -48,11 +54,11 @@ impl Outcome {
         evaluations: &[Evaluation],
     ) -> Self {
         let measured = record.measured.clone();
-        let errors = standard_errors(minimum, ranges);
+        let errors = standard_errors(minimum, ranges, record.step);
         let freedom = minimum.residuals.len().saturating_sub(ranges.len());
         let factor = two_sided_95(freedom);
         let values = record.parameters.iter().zip(&minimum.values).zip(errors);
-        let values = values.map(|((parameter, &value), error)| Value {
+        let values = values.map(|((parameter, &value), error)| FittedValue {
             key: parameter.key.clone(),
             start: parameter.start,
             low: parameter.low,
@@ -79,6 +85,22 @@ impl Outcome {
             converged: minimum.converged,
             runs: minimum.evaluations,
         }
+    }
+
+    /// Returns the values with their errors.
+    pub fn values(&self) -> &[FittedValue] {
+        &self.values
+    }
+
+    /// Returns the number of runs.
+    pub fn runs(&self) -> usize {
+        self.runs
+    }
+
+    /// Returns the root mean square of the differences, divided by the largest measured |y|: of the deck as given and of
+    /// the fitted one.
+    pub fn misfits(&self) -> [f64; 2] {
+        self.misfits
     }
 
     /// Returns whether the values no longer change by more than the tolerance.
@@ -179,7 +201,7 @@ impl Outcome {
             true => String::new(),
             false => format!("{value:?}"),
         };
-        let row = |value: &Value| {
+        let row = |value: &FittedValue| {
             let numbers = [
                 value.start,
                 value.value,

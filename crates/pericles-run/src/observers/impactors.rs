@@ -1,16 +1,16 @@
-//! Table and files of impactors.
+//! Files of impactors.
 
 use pericles::Simulation;
 use pericles::observe::Schedule;
 use pericles_deck::{FieldFormat, Model};
 use pericles_io::OutputFolder;
-use pericles_io::observers::{ImpactorSurfaces, SignalTable};
+use pericles_io::observers::ImpactorSurfaces;
 
 use crate::error::RunError;
 use crate::signals::impactor_signals;
 
-/// Adds the table and the files of impactors; returns their names relative to the folder.
-pub(super) fn add_impactors(
+/// Adds the surfaces of impactors over time; returns their names relative to the folder.
+pub(super) fn add_impactor_surfaces(
     model: &Model,
     folder: &OutputFolder,
     simulation: &mut Simulation,
@@ -19,10 +19,8 @@ pub(super) fn add_impactors(
     let Some(signals) = impactor_signals(model, simulation.system().cloud()) else {
         return Ok(Vec::new());
     };
-    let impactors = signals.names.clone();
-    let table = SignalTable::new(folder.file("impactors.csv"), "observer/impactors", signals);
-    simulation.observe(output.history.schedule, Box::new(table));
-    let mut names = vec!["impactors.csv".to_owned()];
+    let impactors = signals.names;
+    let mut names = Vec::new();
     if output.fields.schedule != Schedule::Never
         && output.fields.formats.contains(&FieldFormat::Vtu)
     {

@@ -4,12 +4,26 @@ use pericles_deck::{Deck, unit_of_key};
 use pericles_io::{Axis as ChartAxis, Curve, LineChart};
 use serde_json::Value;
 
+use super::record::Member;
 use super::results::SweepResults;
 use crate::error::RunError;
 use crate::results::Results;
 use crate::scalar::Scalar;
 
 impl SweepResults {
+    /// Returns the values of the keys of each run in SI units; none for values that are not numbers.
+    ///
+    /// # Errors
+    /// The deck cannot be read.
+    pub fn numbers(&self) -> Result<Vec<Vec<Option<f64>>>, RunError> {
+        let of_member = |member: &Member| {
+            let deck = member.deck.read()?;
+            let axes = self.record.axes.iter();
+            Ok(axes.map(|axis| value_of(&deck, &axis.key)).collect())
+        };
+        self.members.iter().map(of_member).collect()
+    }
+
     /// Returns a chart of a scalar of the runs over the values of a key, by default of the first one, with a curve for each
     /// combination of the other values. Values that are not numbers are counted from 1. Runs without results are omitted.
     ///

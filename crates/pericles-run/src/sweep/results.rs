@@ -61,6 +61,11 @@ impl SweepResults {
         axes.map(|axis| (axis.key.as_str(), axis.values.as_slice()))
     }
 
+    /// Returns the values of the keys of each run as written in decks.
+    pub fn values(&self) -> impl Iterator<Item = &[String]> {
+        self.members.iter().map(|member| member.values.as_slice())
+    }
+
     /// Returns the name of each run, also the name of its folder, and its results if there are any.
     pub fn runs(&self) -> impl Iterator<Item = (&str, Option<Results>)> {
         self.members.iter().map(|member| {

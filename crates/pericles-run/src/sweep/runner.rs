@@ -8,7 +8,7 @@ use pericles_io::OutputFolder;
 
 use super::axis::Axis;
 use super::record::{Member, Record};
-use super::results::SweepResults;
+use super::results::{SweepResults, is_sweep};
 use super::table::Table;
 use crate::assembled::Means;
 use crate::cancel::Cancel;
@@ -17,8 +17,10 @@ use crate::deck_text::DeckText;
 use crate::error::RunError;
 use crate::event::Event;
 use crate::json::write_json;
+use crate::results::Results;
 use crate::run::{Ending, Run};
 use crate::sequence::{self, Sequence, is_sequence};
+use crate::source::SourceRecord;
 
 /// A sweep whose decks are valid, before its folder is created.
 pub struct Plan {
@@ -50,6 +52,39 @@ impl Plan {
             sweep: SweepResults::of(self.record, folder.path()),
             folder,
         })
+    }
+
+    /// Begins the sweep in a folder, or continues there: results of the same deck with the same values are kept, and the runs of
+    /// other decks with the names of runs of this sweep are removed.
+    ///
+    /// # Errors
+    /// The folder exists, is not empty and has no sweep, or it cannot be written.
+    pub fn enter(self, path: &Path) -> Result<Sweep, RunError> {
+        if !is_sweep(path) {
+            let is_empty = path
+                .read_dir()
+                .is_ok_and(|mut entries| entries.next().is_none());
+            return self.begin(OutputFolder::create(path, is_empty)?);
+        }
+        let folder = OutputFolder::open(path)?;
+        for member in self.record.members() {
+            let place = folder.file(&member.name);
+            if place.exists() && !is_of(&place, &member.deck) {
+                OutputFolder::create(place, true)?;
+            }
+        }
+        self.begin(folder)
+    }
+}
+
+/// Returns whether a folder has results of a deck.
+fn is_of(folder: &Path, deck: &DeckText) -> bool {
+    let source = Results::open(folder).and_then(|results| results.source());
+    match source {
+        Ok(SourceRecord::Deck(found)) => {
+            (&found.source, &found.overrides) == (&deck.source, &deck.overrides)
+        }
+        _ => false,
     }
 }
 
