@@ -87,7 +87,7 @@ def test_results_of_a_run(plate, tmp_path):
             result.field("displacement", time=wrong)
     assert result.field("damage").shape == (n,)
     assert result.history["time"][-1] == pytest.approx(4e-6)
-    assert result.history.units["kinetic_energy"] == "J"
+    assert result.history.units["kinetic_energy"] == "J/m"
     assert result.scalar("kinetic_energy") == result.history["kinetic_energy"][-1]
     assert result.scalar("audit.broken_bonds") == result.audit.broken_bonds
     assert abs(result.audit.balance) < 1e-3 * result.audit.initial_energy
