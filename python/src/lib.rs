@@ -35,9 +35,11 @@ mod _pericles {
     #[pymodule_export]
     use crate::simulation::Simulation;
 
-    /// Sets the version.
+    /// Sets the version and the commit.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        #[cfg(feature = "command-line")]
+        pericles_run::set_commit(pericles_cli::COMMIT);
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }
