@@ -1,5 +1,5 @@
 //! Embeds the files under `examples/` in the program for `pericles new`, and records the commit of the sources
-//! (`PERICLES_COMMIT`) and the version with it (`PERICLES_VERSION`).
+//! (`PERICLES_SOURCE_COMMIT`) and the version with it (`PERICLES_VERSION`).
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -30,8 +30,11 @@ fn main() -> io::Result<()> {
     // A builder without Git names the commit itself.
     println!("cargo::rerun-if-env-changed=PERICLES_COMMIT");
     let mut version = env::var("CARGO_PKG_VERSION").unwrap_or_default();
-    if let Some(commit) = env::var("PERICLES_COMMIT").ok().or_else(commit) {
-        println!("cargo::rustc-env=PERICLES_COMMIT={commit}");
+    let named = env::var("PERICLES_COMMIT")
+        .ok()
+        .filter(|named| !named.is_empty());
+    if let Some(commit) = named.or_else(commit) {
+        println!("cargo::rustc-env=PERICLES_SOURCE_COMMIT={commit}");
         version = format!("{version} ({commit})");
     }
     println!("cargo::rustc-env=PERICLES_VERSION={version}");

@@ -60,7 +60,7 @@ use processes::Processes;
 
 /// The commit from which the program was built, followed by `-dirty` if the sources differed from it; `None` if it was
 /// built outside a checkout and the builder did not name it in the variable `PERICLES_COMMIT`.
-pub const COMMIT: Option<&str> = option_env!("PERICLES_COMMIT");
+pub const COMMIT: Option<&str> = option_env!("PERICLES_SOURCE_COMMIT");
 
 /// Parses the command line. If a deck is given without a command, advises `pericles run`.
 ///
