@@ -40,9 +40,11 @@ mod _pericles {
     #[pymodule_export]
     use crate::studies::{Sweep, fit, run_steps};
 
-    /// Sets the version.
+    /// Sets the version and the commit.
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        #[cfg(feature = "command-line")]
+        pericles_run::set_commit(pericles_cli::COMMIT);
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

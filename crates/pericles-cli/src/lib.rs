@@ -58,6 +58,10 @@ use args::{Cli, Command};
 use exit::Exit;
 use processes::Processes;
 
+/// The commit from which the program was built, followed by `-dirty` if the sources differed from it; `None` if it was
+/// built outside a checkout and the builder did not name it in the variable `PERICLES_COMMIT`.
+pub const COMMIT: Option<&str> = option_env!("PERICLES_SOURCE_COMMIT");
+
 /// Parses the command line. If a deck is given without a command, advises `pericles run`.
 ///
 /// # Errors
@@ -79,6 +83,7 @@ fn parsed(arguments: &[OsString]) -> Result<Cli, u8> {
 /// called once, by a process that ends afterwards: it installs signal handlers.
 pub fn command(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     bug::end_at_panics();
+    pericles_run::set_commit(COMMIT);
     let arguments: Vec<OsString> = arguments.into_iter().collect();
     let cli = match parsed(&arguments) {
         Ok(cli) => cli,

@@ -120,7 +120,7 @@ pub use observers::{KeptTable, body_shape, picture_of, recorded, result_body};
 pub use open_facts::{OpenFacts, ReflectionFacts};
 pub use origin::{InitialState, Origin};
 pub use processes::shared_folder;
-pub use report::{Report, Span, Status};
+pub use report::{Report, Span, Status, set_commit};
 pub use results::{FieldFile, Results, file_name};
 pub use run::{Ending, Run};
 pub use scalar::scalar;

@@ -1,6 +1,7 @@
 //! `run.json`: source, model, progress, and balance of energy and momentum.
 
 use std::path::Path;
+use std::sync::OnceLock;
 
 use pericles::Simulation;
 use serde::Serialize;
@@ -56,8 +57,18 @@ pub struct Report {
 struct Program {
     name: &'static str,
     version: &'static str,
+    commit: Option<&'static str>,
     threads: usize,
     machine: String,
+}
+
+/// The commit of the program. The program, the last crate that is compiled, sets it: a constant of this crate would
+/// have all crates above it compiled after every commit.
+static COMMIT: OnceLock<Option<&'static str>> = OnceLock::new();
+
+/// Sets the commit from which the running program was built, which `run.json` records. The first call decides.
+pub fn set_commit(commit: Option<&'static str>) {
+    COMMIT.get_or_init(|| commit);
 }
 
 /// Progress and performance of the current session.
@@ -113,6 +124,7 @@ impl Report {
             program: Program {
                 name: "pericles",
                 version: env!("CARGO_PKG_VERSION"),
+                commit: COMMIT.get().copied().flatten(),
                 threads: rayon::current_num_threads(),
                 machine: machine::words(),
             },

@@ -50,7 +50,7 @@ Examples:
 #[derive(Debug, Parser)]
 #[command(
     name = "pericles",
-    version,
+    version = env!("PERICLES_VERSION"),
     about = ABOUT,
     after_help = EXAMPLES,
     after_long_help = format!("{EXAMPLES}\n\n{}", Exit::table()),

@@ -196,6 +196,12 @@ fn run_json_contains_deck_model_and_results() {
     let number = |path: &str| report.pointer(path).and_then(|v| v.as_f64()).unwrap();
     assert_eq!(report["program"]["threads"], 1);
     assert_eq!(report["program"]["version"], env!("CARGO_PKG_VERSION"));
+    let commit = report["program"]["commit"].as_str();
+    assert_eq!(commit, pericles_cli::COMMIT);
+    let version = succeed(place.path(), "--version");
+    let version = String::from_utf8(version.stdout).unwrap();
+    assert_eq!(version.contains('('), commit.is_some(), "{version}");
+    assert!(version.contains(commit.unwrap_or_default()), "{version}");
     assert_eq!(report["deck"]["source"], crate::common::PLATE);
     assert_eq!(report["deck"]["overrides"][0], "material.E=70e9");
     assert_eq!(number("/deck/values/body/spacing"), 1e-3);

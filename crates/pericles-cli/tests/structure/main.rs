@@ -7,6 +7,7 @@ mod book;
 mod graph;
 mod known;
 mod phrases;
+mod publishing;
 mod source;
 mod syntax;
 
@@ -270,4 +271,10 @@ fn texts_use_the_terms_of_the_glossary() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let found = phrases::found(&root);
     assert!(found.is_empty(), "{}", found.join("\n"));
+}
+
+#[test]
+fn version_and_address_are_those_of_the_workspace() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    fail_on(&publishing::problems(&root));
 }
