@@ -33,9 +33,13 @@ impl View {
         [dot(p, self.right), dot(p, self.up), dot(p, self.eye)]
     }
 
-    /// Returns the light on a surface with this normal, from above left of the viewer; normals are taken
-    /// towards the viewer.
-    pub(super) fn light_on(&self, normal: [f64; 3]) -> f64 {
+    /// Returns 1 for a face whose normal points towards the viewer, otherwise −1.
+    pub(super) fn side_of(&self, normal: [f64; 3]) -> f64 {
+        dot(normal, self.eye).signum()
+    }
+
+    /// Returns the light on a surface with this normal, from above left of the viewer, on the side that is seen.
+    pub(super) fn light_on(&self, normal: [f64; 3], side: f64) -> f64 {
         /// Light on surfaces that the source does not reach.
         const AMBIENT: f64 = 0.6;
         let lamp = |k: usize| self.eye[k] + 0.7 * self.up[k] - 0.5 * self.right[k];
@@ -44,7 +48,7 @@ impl View {
         if size == 0.0 {
             return 1.0;
         }
-        let towards = dot(normal, lamp) * dot(normal, self.eye).signum() / size;
+        let towards = dot(normal, lamp) * side / size;
         AMBIENT + (1.0 - AMBIENT) * towards.max(0.0)
     }
 
@@ -65,7 +69,7 @@ impl View {
         let seen = (0..3).filter(|&c| self.eye[c].abs() > EDGE_ON);
         let most = seen.map(|c| self.eye[c].signum() * lamp[c]);
         let most = most.fold(f64::MIN_POSITIVE, f64::max);
-        let towards = dot(normal, lamp) * dot(normal, self.eye).signum() / size;
+        let towards = dot(normal, lamp) * self.side_of(normal) / size;
         SHADE + (1.0 - SHADE) * (towards / most).clamp(0.0, 1.0)
     }
 }

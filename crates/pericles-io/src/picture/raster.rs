@@ -175,10 +175,7 @@ impl Raster {
             }
             for i in columns {
                 let x = i as f64 + 0.5;
-                let area = |p: [f64; 3], q: [f64; 3]| {
-                    ((p[0] - x) * (q[1] - y) - (q[0] - x) * (p[1] - y)) / doubled
-                };
-                let shares = [area(b, c), area(c, a), area(a, b)];
+                let shares: [f64; 3] = std::array::from_fn(|k| at_zero[k] + slopes[k] * x);
                 if (0..3).all(|k| shares[k] >= -slack[k]) {
                     let seam = match shares.iter().any(|share| *share < 0.0) {
                         true => rank.seam.unwrap_or(0.0),

@@ -4,7 +4,7 @@ use super::bitmap::{INK, Pen, Rgb};
 use super::clip::clipped;
 use super::colour::shaded;
 use super::drawing::{Drawing, Spot};
-use super::frame::{Area, ColourBar, Sizes};
+use super::frame::{Area, ColourBar, Palette, Sizes};
 use super::polygon;
 use super::projection::{Placing, View};
 use super::raster::{Rank, Raster};
@@ -12,7 +12,7 @@ use super::scene::{Facet, Scene};
 use super::text::{Align, Style};
 use super::ticks::{Ticks, round_below};
 use pericles::units::quantity;
-use pericles::vector::{cross, dot};
+use pericles::vector::{cross, dot, plus};
 
 const MARGIN: f64 = 0.03;
 const FLATTEST: f64 = 0.2;
@@ -164,7 +164,7 @@ fn draw_cells(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     }
 }
 
-/// Draws triangles of a surface, lit by their normals.
+/// Draws triangles of a surface, lit by the normals at their corners (Gouraud shading).
 fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     let corners = |facet: &Facet| facet.corners.map(|corner| placing.place(corner));
     let mut placed: Vec<_> = scene
@@ -176,17 +176,16 @@ fn draw_facets(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     let nearest =
         |corners: &[[f64; 3]; 3]| corners.iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
     placed.sort_by(|(a, _), (b, _)| nearest(a).total_cmp(&nearest(b)));
+    let palette = Palette::of(&scene.bar);
     for (corners, facet) in placed {
+        // Corners of a face at the outline may have normals that point away from the viewer.
+        let [a, b, c] = facet.normals;
+        let side = placing.view.side_of(plus(plus(a, 1.0, b), 1.0, c));
+        let lights = facet.normals;
+        let lights = lights.map(|normal| placing.view.light_on(normal, side));
         raster.triangle(corners, LAST, |shares| {
-            let [s, t, r] = shares;
-            let mix = |[x, y, z]: [f64; 3]| s * x + t * y + r * z;
-            let [a, b, c] = facet.normals;
-            let along = |k: usize| mix([a[k], b[k], c[k]]);
-            let normal = [along(0), along(1), along(2)];
-            shaded(
-                scene.bar.colour(mix(facet.values)),
-                placing.view.light_on(normal),
-            )
+            let mix = |of: [f64; 3]| dot(shares, of);
+            shaded(palette.colour(mix(facet.values)), mix(lights))
         });
     }
 }
@@ -196,7 +195,8 @@ fn draw_rigid(raster: &mut Raster, scene: &Scene, placing: &Placing) {
     for &corners in &scene.rigid {
         let [a, b, c] = corners;
         let edge = |p: [f64; 3]| std::array::from_fn(|k| p[k] - a[k]);
-        let light = placing.view.light_on(cross(edge(b), edge(c)));
+        let normal = cross(edge(b), edge(c));
+        let light = placing.view.light_on(normal, placing.view.side_of(normal));
         let colour = shaded(RIGID, light);
         raster.triangle(corners.map(|corner| placing.place(corner)), LAST, |_| {
             colour
