@@ -168,7 +168,9 @@ class Progress(Record):
 
 
 class Audit(Record):
-    """Balance of energy and momentum at the end of a run; energies in J. :class:`Record` has further entries.
+    """Balance of energy and momentum at the end of a run; energies in J, per metre for plates without a thickness.
+
+    :class:`Record` has further entries.
 
     Attributes
     ----------

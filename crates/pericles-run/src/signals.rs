@@ -11,6 +11,7 @@ use pericles::System;
 use pericles::observe::{ObserveError, Probe, Snapshot, TrackedCrack};
 use pericles::space::PointCloud;
 use pericles::time::Integrator;
+use pericles::units::BodyUnits;
 use pericles_deck::{
     BuildError, DerivedQuantity, Fault, KeyPath, Model, Remark, Scheme, SignalCondition,
     SignalExpression, StaticBreaking,
@@ -30,6 +31,7 @@ pub struct SignalRegistry {
     /// Columns of all sources, in their order.
     columns: Vec<Column>,
     quantities: Vec<Quantity>,
+    units: BodyUnits,
 }
 
 /// A source and the index of its first column.
@@ -42,6 +44,8 @@ struct Source {
 struct Quantity {
     name: String,
     unit: String,
+    /// The unit if the units of forces and energies are those of the whole body.
+    whole: String,
     value: Bound,
 }
 
@@ -135,6 +139,7 @@ impl SignalRegistry {
             sources: Vec::new(),
             columns: Vec::new(),
             quantities: Vec::new(),
+            units: system.cloud().body_units(),
         };
         registry.add(Box::new(TimeSignal));
         registry.add(Box::new(EnergySignals {
@@ -169,6 +174,7 @@ impl SignalRegistry {
             sources: Vec::new(),
             columns: Vec::new(),
             quantities: Vec::new(),
+            units: BodyUnits::of(3, 1.0),
         };
         registry.add(Box::new(ProbeSignals {
             probes: probes.to_vec(),
@@ -225,10 +231,19 @@ impl SignalRegistry {
         }
         let value = self.bound(expression, &path.key("expression"))?;
         let units: Vec<&str> = value.names.iter().map(|&k| self.unit(k)).collect();
+        let wholes: Vec<&str> = value.names.iter().map(|&k| self.whole_unit(k)).collect();
+        let whole = expression.unit(&wholes);
+        let is_whole = |unit: &str| {
+            let whole = whole.as_ref();
+            whole.is_ok_and(|whole| SignalExpression::is_same_unit(unit, whole))
+        };
         let unit = match (expression.unit(&units), unit) {
             (Ok(derived), None) => derived,
             (Err(_), Some(unit)) => unit.clone(),
-            (Ok(derived), Some(unit)) if SignalExpression::is_same_unit(unit, &derived) => {
+            // The thickness of a body without one is 1 m: forces of the whole body have the same numbers.
+            (Ok(derived), Some(unit))
+                if SignalExpression::is_same_unit(unit, &derived) || is_whole(unit) =>
+            {
                 unit.clone()
             }
             (Ok(derived), Some(unit)) => {
@@ -259,6 +274,7 @@ impl SignalRegistry {
         };
         self.quantities.push(Quantity {
             name: name.clone(),
+            whole: whole.unwrap_or_else(|_| unit.clone()),
             unit,
             value,
         });
@@ -286,6 +302,14 @@ impl SignalRegistry {
         match self.columns.get(index) {
             Some(column) => column.unit(),
             None => &self.quantities[index - self.columns.len()].unit,
+        }
+    }
+
+    /// Returns the unit of a signal if those of forces and energies are those of the whole body.
+    fn whole_unit(&self, index: usize) -> &str {
+        match self.columns.get(index) {
+            Some(column) => self.units.whole(column.unit()),
+            None => &self.quantities[index - self.columns.len()].whole,
         }
     }
 
@@ -426,14 +450,15 @@ impl SignalStop {
             .map(|name| registry.index(name, path))
             .collect();
         let indices = indices?;
-        let unit = |name: &str| {
-            let known = names
-                .iter()
-                .zip(&indices)
-                .find(|(known, _)| **known == name);
-            known.map_or(String::new(), |(_, &k)| registry.unit(k).to_owned())
+        let of = |name: &str| {
+            let mut known = names.iter().zip(&indices);
+            known.find(|(known, _)| **known == name).map(|(_, &k)| k)
         };
-        condition.check_units(&unit).map_err(|reason| {
+        let unit = |name: &str| of(name).map_or("", |k| registry.unit(k)).to_owned();
+        let whole = |name: &str| of(name).map_or("", |k| registry.whole_unit(k)).to_owned();
+        let checked = condition.check_units(&unit);
+        let checked = checked.or_else(|reason| condition.check_units(&whole).map_err(|_| reason));
+        checked.map_err(|reason| {
             let fault = Fault::BadCondition {
                 text: condition.text().into(),
                 reason,

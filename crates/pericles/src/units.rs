@@ -40,6 +40,13 @@ impl BodyUnits {
         unit_per(whole, self.per())
     }
 
+    /// Returns the unit for the whole body of a quantity with the given unit: `N` for `N/m`; the unit itself for other quantities.
+    pub fn whole(self, unit: &str) -> &str {
+        let wholes = ["N", "J", "kg", "kg m/s", "N m", "N s"].into_iter();
+        let is_own = |whole: &&str| self.per().is_some() && self.unit(whole) == unit;
+        wholes.into_iter().find(is_own).unwrap_or(unit)
+    }
+
     /// Formats a quantity of the whole body, with the given SI unit, as [`quantity`] does.
     pub fn quantity(self, value: f64, whole: &str) -> String {
         quantity(value, &self.unit(whole))
@@ -222,6 +229,9 @@ mod tests {
         let plate = BodyUnits::of(2, 1.0);
         assert_eq!(plate.unit("kg m/s"), "kg/s");
         assert_eq!(plate.quantity(1200.0, "J"), "1.20 kJ/m");
+        assert_eq!(plate.whole("J/m"), "J");
+        assert_eq!(plate.whole("m/s"), "m/s");
+        assert_eq!(BodyUnits::of(3, 1.0).whole("N/m"), "N/m");
     }
 
     #[test]

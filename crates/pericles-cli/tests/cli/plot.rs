@@ -367,7 +367,7 @@ fn sweeps_have_charts_contents_and_reports() {
         "material.density [",
         "kg/m3]",
         ">external work [",
-        "J]",
+        "J/m]",
         "horizon_ratio = 3",
     ] {
         assert!(svg.contains(words), "{words}: {svg}");

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use pericles_io::{CsvData, read_csv};
 
-use crate::common::{assert_same_results, fail, report, succeed, text, with_plate};
+use crate::common::{assert_same_results, fail, pericles, report, succeed, text, with_plate};
 
 /// Two probes at the notch mouth, quantities of all kinds of columns, and a table of crack tips with the same rows.
 const MORE: &str = r#"
@@ -52,7 +52,7 @@ fn quantities_are_the_values_of_their_expressions() {
     let header = header.lines().next().unwrap();
     assert_eq!(
         header,
-        "step,time [s],CMOD [m],stiffness [N/m],released [J/m],odd [mixed]"
+        "step,time [s],CMOD [m],stiffness [Pa],released [J/m],odd [mixed]"
     );
     let [quantities, probes, reactions, history, cracks] =
         ["quantities", "probes", "reactions", "history", "cracks"]
@@ -146,7 +146,7 @@ fn sweeps_and_convergence_studies_have_quantities() {
     let summary = fs::read_to_string(place.path().join("plate-sweep/summary.csv")).unwrap();
     let header = summary.lines().next().unwrap();
     assert!(
-        header.ends_with("CMOD [m],stiffness [N/m],released [J/m],odd [mixed]"),
+        header.ends_with("CMOD [m],stiffness [Pa],released [J/m],odd [mixed]"),
         "{header}"
     );
     let last = table(
@@ -176,7 +176,7 @@ fn errors_of_quantities_are_explained() {
             "'upper lip'.u_y - lower.u_y",
             "'upper lip'.u_y - top_y",
             &[
-                "its unit cannot be derived: it adds values in m and N",
+                "its unit cannot be derived: it adds values in m and N/m",
                 "unit = \"N/m\"",
             ],
         ),
@@ -214,7 +214,7 @@ fn errors_of_quantities_are_explained() {
         (
             "[time]",
             "[[time.stop_when]]\ncondition = \"CMOD > top_y\"\n[time]",
-            &["the condition `CMOD > top_y` cannot be used: it compares m with N"],
+            &["the condition `CMOD > top_y` cannot be used: it compares m with N/m"],
         ),
         (
             "[time]",
@@ -249,4 +249,22 @@ fn errors_of_quantities_are_explained() {
             assert!(plain.contains(part), "{part}: {message}");
         }
     }
+}
+
+/// The plate has no thickness: its forces are per metre, which are those of a plate 1 m thick.
+#[test]
+fn forces_of_a_plate_without_thickness_compare_with_both_units() {
+    let place = with_plate();
+    write_deck(place.path());
+    let status = |force: &str| {
+        let stop = format!("time.stop_when=[{{condition=\"top_y > '{force}'\"}}]");
+        let mut command = pericles(place.path());
+        let output = command
+            .args(["check", "plate.toml", "--set", &stop])
+            .output();
+        output.unwrap().status.code()
+    };
+    assert_eq!(status("3 kN/m"), Some(0));
+    assert_eq!(status("3 kN"), Some(0));
+    assert_eq!(status("3 m"), Some(3));
 }

@@ -231,7 +231,7 @@ fn a_page_has_cells_pre_cracks_sets_and_time_histories() {
         page.f64(&kinetic["block"]),
         exact.column("kinetic_energy").unwrap()
     );
-    assert_eq!(kinetic["unit"], "J");
+    assert_eq!(kinetic["unit"], "J/m");
 }
 
 #[test]

@@ -83,7 +83,7 @@ impl Measured {
         for ((name, measured), computed) in self.names.iter().zip(&self.units).zip(&pair.units) {
             if !measured.is_empty() && !SignalExpression::is_same_unit(measured, computed) {
                 let reason = format!(
-                    "{name} is measured in {measured}, but the run has it in {}; give the measured curve the same quantity, for instance by [[output.quantity]]",
+                    "{name} is measured in {measured}, but the run has it in {}; give the run the measured quantity, for instance by body.thickness or [[output.quantity]]",
                     if computed.is_empty() {
                         "no unit"
                     } else {
