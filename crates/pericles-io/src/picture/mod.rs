@@ -44,6 +44,7 @@ mod field;
 mod frame;
 mod legend;
 mod line_chart;
+mod palette;
 mod pdf;
 mod plane;
 mod polygon;
