@@ -346,7 +346,7 @@ class Model:
         if displacement is None and velocity is None:
             raise PericlesError("give displacement, velocity or both")
         if displacement is not None and velocity is not None and not (callable(displacement) and callable(velocity)):
-            raise PericlesError("a velocity besides a displacement is for functions; expressions have exact derivatives")
+            raise PericlesError("velocity together with displacement is for functions only: derivatives of expressions are exact")
         are_rates = displacement is None
         given: Any
         given, quantity = (velocity, "velocity") if are_rates else (displacement, "displacement")
@@ -440,7 +440,7 @@ class Model:
         force : bool
             Replace results in the folder.
         keep : sequence of str
-            The fields that a simulation in memory keeps, besides its tables.
+            The fields that a simulation in memory keeps in addition to its tables.
         every, time, count : int or float, optional
             When they are kept: every given number of steps, each given time (s), or the given number of times. By default
             100 times.

@@ -1,6 +1,6 @@
 //! Quantities measured on a moving surface.
 
-use pericles::vector::{cross, minus, norm};
+use pericles::vector::{norm, normal};
 use std::sync::Arc;
 
 use crate::surface::Surface;
@@ -187,10 +187,6 @@ fn find(root: &mut [u32], mut i: u32) -> u32 {
         i = root[i as usize];
     }
     i
-}
-
-fn normal([a, b, c]: [Point; 3]) -> Point {
-    cross(minus(b, a), minus(c, a))
 }
 
 /// Margin of the energy estimate √E(0) + ∫ ‖b‖ ds/√(2ρ) − √E(t), J^½, with ‖b‖² = Σ A |b|² and ρ the lowest

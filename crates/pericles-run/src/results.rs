@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::error::RunError;
 use crate::machine;
 use crate::source::SourceRecord;
-use crate::units::{is_of_body, unit_of_number, unit_per};
+use crate::units::{unit_of_number, unit_per};
 
 /// The results of a run.
 pub struct Results {
@@ -95,9 +95,8 @@ impl Results {
 
     /// Returns the SI unit of a number of `run.json`, such as `audit.balance`; empty for ratios and counts.
     pub fn unit_of(&self, name: &str) -> String {
-        let unit = unit_of_number(name);
         let per = self.value("/model/units_per").and_then(Value::as_str);
-        unit_per(unit, per.filter(|_| is_of_body(unit)))
+        unit_per(unit_of_number(name), per)
     }
 
     /// Returns a count of `run.json`; zero if missing.

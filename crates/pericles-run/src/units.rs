@@ -46,7 +46,7 @@ pub use pericles::units::{count, number_of, quantity, significant, unit_per};
 
 /// Returns the SI unit of a number of `run.json` by the last part of its name; empty for ratios and counts.
 ///
-/// Quantities of the whole body (see [`is_of_body`]) may be per unit of its section.
+/// Quantities of the whole body may be per unit of its section, see [`unit_per`].
 pub fn unit_of_number(name: &str) -> &'static str {
     const UNITS: [(&str, &[&str]); 12] = [
         ("m", &["spacing", "horizon"]),
@@ -92,11 +92,6 @@ pub fn unit_of_number(name: &str) -> &'static str {
     let key = name.rsplit('.').next().unwrap_or(name);
     let found = UNITS.iter().find(|(_, keys)| keys.contains(&key));
     found.map_or("", |(unit, _)| unit)
-}
-
-/// Returns whether a unit of [`unit_of_number`] belongs to a quantity of the whole body.
-pub fn is_of_body(unit: &str) -> bool {
-    ["J", "N", "kg", "kg m/s"].contains(&unit)
 }
 
 /// Formats an angular frequency (1/s) with five significant digits: `1.6330`, `5.8244e6`.

@@ -42,9 +42,8 @@ impl BodyUnits {
 
     /// Returns the unit for the whole body of a quantity with the given unit: `N` for `N/m`; the unit itself for other quantities.
     pub fn whole(self, unit: &str) -> &str {
-        let wholes = ["N", "J", "kg", "kg m/s", "N m", "N s"].into_iter();
         let is_own = |whole: &&str| self.per().is_some() && self.unit(whole) == unit;
-        wholes.into_iter().find(is_own).unwrap_or(unit)
+        OF_BODY.into_iter().find(is_own).unwrap_or(unit)
     }
 
     /// Formats a quantity of the whole body, with the given SI unit, as [`quantity`] does.
@@ -53,9 +52,13 @@ impl BodyUnits {
     }
 }
 
-/// Returns the SI unit of a quantity of a body per metre of thickness or per square metre of area, or the unit itself.
+/// SI units of quantities of a whole body.
+const OF_BODY: [&str; 6] = ["N", "J", "kg", "kg m/s", "N m", "N s"];
+
+/// Returns the SI unit of a quantity of a body per metre of thickness or per square metre of area; the unit itself for other
+/// quantities, such as lengths.
 pub fn unit_per(whole: &str, per: Option<&str>) -> String {
-    match per {
+    match per.filter(|_| OF_BODY.contains(&whole)) {
         None => whole.into(),
         Some("m") if whole == "kg m/s" => "kg/s".into(),
         Some("m") if whole == "N m" => "N".into(),
@@ -228,6 +231,7 @@ mod tests {
         assert_eq!(unit(3, 1.0), "N");
         let plate = BodyUnits::of(2, 1.0);
         assert_eq!(plate.unit("kg m/s"), "kg/s");
+        assert_eq!(plate.unit("Pa"), "Pa");
         assert_eq!(plate.quantity(1200.0, "J"), "1.20 kJ/m");
         assert_eq!(plate.whole("J/m"), "J");
         assert_eq!(plate.whole("m/s"), "m/s");

@@ -24,6 +24,12 @@ pub fn cross(a: Point, b: Point) -> Point {
     ]
 }
 
+/// Returns the normal of a triangle, as long as twice its area.
+#[inline]
+pub fn normal([a, b, c]: [Point; 3]) -> Point {
+    cross(minus(b, a), minus(c, a))
+}
+
 /// Returns a − b.
 #[inline]
 pub fn minus(a: Point, b: Point) -> Point {

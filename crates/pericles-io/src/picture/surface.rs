@@ -1,7 +1,7 @@
 //! Shaded triangles of a surface whose vertices are the points.
 
 use super::scene::Facet;
-use pericles::vector::{cross, minus};
+use pericles::vector::normal;
 
 /// Returns the triangles with finite corners. Values are not interpolated if they are identification numbers.
 pub(super) fn facets(
@@ -34,9 +34,4 @@ pub(super) fn facets(
             },
         })
         .collect()
-}
-
-/// Returns the normal of a triangle, as long as twice its area.
-fn normal([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    cross(minus(b, a), minus(c, a))
 }

@@ -3,7 +3,7 @@
 use super::{HalfEdges, Surface};
 use pericles::Result;
 use pericles::space::{Point, PointCloud};
-use pericles::vector::{cross, dot, minus, norm};
+use pericles::vector::{cross, dot, minus, norm, normal};
 
 /// Rule that distributes the area of triangles to their corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -165,11 +165,6 @@ impl Surface {
             })
             .collect()
     }
-}
-
-/// Twice the area times the outward normal.
-pub(crate) fn normal([a, b, c]: [Point; 3]) -> Point {
-    cross(minus(b, a), minus(c, a))
 }
 
 fn corner_angles(corners: [Point; 3]) -> [f64; 3] {
