@@ -8,6 +8,7 @@ use serde::Serialize;
 
 use crate::args::BenchArgs;
 use crate::console;
+use crate::devices;
 use crate::error::CliError;
 use crate::exit::Exit;
 
@@ -140,6 +141,9 @@ fn bench_small(args: &BenchArgs) -> Result<Exit, CliError> {
 /// # Errors
 /// The case is unknown, or output cannot be written.
 pub(crate) fn bench(args: &BenchArgs) -> Result<Exit, CliError> {
+    if let Some(wanted) = args.device.graphics() {
+        return devices::bench(args, wanted);
+    }
     if args.case.as_deref() == Some(SMALL) {
         return bench_small(args);
     }

@@ -6,7 +6,7 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 
 use miette::{Diagnostic, LabeledSpan, SourceCode};
-use pericles::{PericlesError, SimulationError};
+use pericles::{DeviceError, PericlesError, SimulationError};
 use pericles_deck::DeckError;
 use pericles_io::{IoError, MeshError};
 use pericles_manifold::surface::SurfaceError;
@@ -226,8 +226,32 @@ impl CliError {
     }
 }
 
+/// Returns the error of a graphics processor.
+fn device_error(error: &RunError) -> Option<&DeviceError> {
+    let error = match error {
+        RunError::Library(error) => error,
+        RunError::Simulation(SimulationError::Stuck { source, .. })
+        | RunError::Unstable {
+            source: SimulationError::Stuck { source, .. },
+            ..
+        } => source,
+        _ => return None,
+    };
+    match error {
+        PericlesError::Device(error) => Some(error),
+        _ => None,
+    }
+}
+
 /// Returns the exit status for an error of a run.
 pub(crate) fn exit_of(error: &RunError) -> Exit {
+    if let Some(error) = device_error(error) {
+        return match error {
+            DeviceError::Missing(_) | DeviceError::Failed(_) => Exit::Device,
+            DeviceError::Unsuitable(_) => Exit::Input,
+            DeviceError::Memory(_) => Exit::Memory,
+        };
+    }
     match error {
         RunError::Deck(error) if error.is_too_large() => Exit::Memory,
         RunError::Io(IoError::TooLarge { .. })

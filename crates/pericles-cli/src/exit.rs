@@ -14,6 +14,7 @@ pub(crate) enum Exit {
     StoppedEarly = 7,
     Memory = 8,
     Processes = 9,
+    Device = 10,
     HungUp = 129,
     Interrupted = 130,
     Warned = 138,
@@ -22,7 +23,7 @@ pub(crate) enum Exit {
 
 impl Exit {
     /// All statuses in ascending order.
-    const ALL: [Self; 14] = [
+    const ALL: [Self; 15] = [
         Self::Done,
         Self::Internal,
         Self::Usage,
@@ -33,6 +34,7 @@ impl Exit {
         Self::StoppedEarly,
         Self::Memory,
         Self::Processes,
+        Self::Device,
         Self::HungUp,
         Self::Interrupted,
         Self::Warned,
@@ -58,6 +60,7 @@ impl Exit {
             Self::Processes => {
                 "several processes (mpirun, srun) without MPI support, or for a command of one process"
             }
+            Self::Device => "no graphics processor (--device), or one that has failed",
             Self::Interrupted => "Ctrl-C, with a checkpoint (a second Ctrl-C exits immediately)",
             Self::HungUp => "SIGHUP (terminal closed), with a checkpoint",
             Self::Warned => "SIGUSR1 (for example from a batch system), with a checkpoint",

@@ -18,6 +18,7 @@ mod charts;
 mod check;
 mod console;
 mod converge;
+mod devices;
 mod diff;
 mod dispersion;
 mod drawn;
@@ -105,6 +106,7 @@ pub fn command(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Run(args) => run::run(&args, &processes),
         Command::Check(args) => check::check(&args),
         Command::Resume(args) => run::resume(&args, &processes),
+        Command::Devices(args) => devices::list(&args),
         Command::Info(args) => info::info(&args),
         Command::Report(args) => page::report(&args),
         Command::Plot(args) => plot::plot(&args),

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use pericles_deck::Processor;
 use pericles_io::IoError;
 use pericles_run::units::{count, quantity, significant};
 use pericles_run::{Assembled, Means, Source, Vibration};
@@ -61,6 +62,8 @@ pub(crate) fn modes(args: &ModesArgs) -> Result<Exit, CliError> {
     let means = Means {
         caching: args.caching.wanted(),
         memory: args.memory.bytes(),
+        // Modes have no steps.
+        processor: Some(Processor::default()),
         ..Means::default()
     };
     let assembled = Assembled::of(&source, &means, &mut |_| {})?;

@@ -23,6 +23,7 @@ use crate::material::{self, Material, MaterialModel, Materials, NamedMaterial};
 use crate::model::{Body, Model, Solid};
 use crate::output::{Checkpoint, Output, OutputScope};
 use crate::overrides;
+use crate::processor::Processor;
 use crate::reader::{Ledger, Record, Survey, Table};
 use crate::region::Frame;
 use crate::remark::{BuildError, Remark};
@@ -227,6 +228,9 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     let checkpoint = root
         .table_or_empty("checkpoint")
         .and_then(|table| Checkpoint::read_table(table, ()));
+    let run = root
+        .table_or_empty("run")
+        .and_then(|table| Processor::read_table(table, ()));
     root.finish();
     let (materials, assignments, interfaces) = several?;
     Some(Model {
@@ -250,6 +254,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
         time: time?,
         output: output?,
         checkpoint: checkpoint?,
+        run: run?,
     })
 }
 

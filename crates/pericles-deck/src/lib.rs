@@ -112,6 +112,7 @@ mod newmark;
 mod output;
 mod overrides;
 mod parse;
+mod processor;
 mod property;
 mod quantity;
 mod range;
@@ -172,6 +173,7 @@ pub use output::{
     FragmentOutput, HistoryOutput, Output, Picture, PictureColours, PictureFormat, PictureLook,
     PointNumber, Precision, Profile,
 };
+pub use processor::{DeviceKind, DevicePrecision, Processor};
 pub use property::{
     MaterialFunction, MaterialFunctions, MaterialProperty, Property, PropertyFunction,
 };

@@ -18,6 +18,7 @@ use crate::interface::MaterialInterface;
 use crate::key_path::KeyPath;
 use crate::material::{Material, NamedMaterial};
 use crate::output::{Checkpoint, Output};
+use crate::processor::Processor;
 use crate::set::NamedSet;
 use crate::surface::SurfaceBody;
 use crate::thermal::Thermal;
@@ -143,6 +144,9 @@ pub struct Model {
     /// `[checkpoint]`
     #[serde(default)]
     pub checkpoint: Checkpoint,
+    /// `[run]`
+    #[serde(default)]
+    pub run: Processor,
 }
 
 /// The body with its material.
@@ -258,6 +262,7 @@ impl Model {
             time,
             output: Output::default(),
             checkpoint: Checkpoint::default(),
+            run: Processor::default(),
         }
     }
 

@@ -16,7 +16,7 @@ const STEP: &str = "step";
 const NAME: &str = "name";
 
 /// The tables that a step may replace: all that do not describe the body, whose state is handed over.
-const TABLES: [&str; 13] = [
+const TABLES: [&str; 14] = [
     "time",
     "initial",
     "constraint",
@@ -30,6 +30,7 @@ const TABLES: [&str; 13] = [
     "damping",
     "output",
     "checkpoint",
+    "run",
 ];
 
 /// Tables of the deck that belong to the first step only: they describe how the run starts.

@@ -6,10 +6,12 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use pericles::DeviceError;
 use pericles::PericlesError;
 use pericles::cache::{Cache, NoCache};
 use pericles::domain::{Alone, Comm};
-use pericles_deck::{BuildError, Fault};
+use pericles::time::Device;
+use pericles_deck::{BuildError, DeviceKind, Fault, Model, Processor};
 use pericles_io::{
     DiskCache, IoError, MeshError, TextError, read_mesh, read_outline, read_points, read_rows,
     read_surface,
@@ -32,6 +34,19 @@ pub struct Means {
     pub memory: u64,
     /// Communication with the processes among which the body is divided.
     pub comm: Arc<dyn Comm>,
+    /// Opens graphics processors; `None` in programs without them.
+    pub devices: Option<Arc<dyn Devices>>,
+    /// The processor of the steps, if it is not that of the deck.
+    pub processor: Option<Processor>,
+}
+
+/// Opens processors other than that of the machine.
+pub trait Devices: Send + Sync {
+    /// Opens the processor that a deck or user wants, whose kind is not [`DeviceKind::Cpu`].
+    ///
+    /// # Errors
+    /// [`PericlesError::Device`].
+    fn open(&self, wanted: Processor) -> Result<Arc<dyn Device>, PericlesError>;
 }
 
 impl fmt::Debug for Means {
@@ -40,9 +55,14 @@ impl fmt::Debug for Means {
             caching,
             memory,
             comm,
+            devices: _,
+            processor,
         } = self;
         let (rank, size) = (comm.rank(), comm.size());
-        write!(f, "{caching:?}, {memory} bytes, process {rank} of {size}")
+        write!(
+            f,
+            "{caching:?}, {memory} bytes, process {rank} of {size}, {processor:?}"
+        )
     }
 }
 
@@ -53,6 +73,8 @@ impl Default for Means {
             caching: Caching::User,
             memory: machine::memory(),
             comm: Arc::new(Alone),
+            devices: None,
+            processor: None,
         }
     }
 }
@@ -77,6 +99,12 @@ impl Caching {
             Self::Off => None,
         }
     }
+}
+
+/// Returns the error of a program without graphics processors.
+pub fn no_devices() -> PericlesError {
+    let reason = "this program was built without graphics processors; build it with `cargo build --release -p pericles-cli --features gpu`, or use the device \"cpu\"";
+    DeviceError::Missing(reason.into()).into()
 }
 
 /// An assembled model with its properties before the first step.
@@ -135,10 +163,11 @@ impl Assembled {
                 ..*resources
             })
         });
-        let assembly = assembly.map_err(|error| match is_elsewhere(&error) {
+        let mut assembly = assembly.map_err(|error| match is_elsewhere(&error) {
             true => PericlesError::OnAnotherProcess.into(),
             false => source.rejection(error),
         })?;
+        means.place(model, &mut assembly)?;
         let facts = match source {
             Source::Deck { deck, .. } => Facts::of_deck(deck, &assembly),
             Source::Model(_) => Facts::of(model, &assembly),
@@ -155,6 +184,28 @@ fn is_elsewhere(error: &BuildError) -> bool {
 }
 
 impl Means {
+    /// Lets the processor that the deck or the user wants compute the steps.
+    fn place(&self, model: &Model, assembly: &mut Assembly) -> Result<(), PericlesError> {
+        let wanted = self.processor.unwrap_or(model.run);
+        if wanted.device == DeviceKind::Cpu {
+            return Ok(());
+        }
+        let Some(devices) = &self.devices else {
+            return Err(no_devices());
+        };
+        let device = devices.open(wanted)?;
+        let Assembly {
+            system,
+            integrator,
+            dt,
+            ..
+        } = assembly;
+        let plan = device.plan(system, &**integrator, *dt)?;
+        *integrator = device.integrator(system, &**integrator, *dt)?;
+        assembly.device = Some(plan);
+        Ok(())
+    }
+
     /// Calls `make` with the resources, and reports the notes of the cache.
     fn with_resources<T>(&self, tell: Tell<'_>, make: impl FnOnce(&Resources<'_>) -> T) -> T {
         let cache = self.caching.cache();

@@ -1,5 +1,6 @@
 //! Properties of a run before its first step, for reports, `check` and `run.json`.
 
+use pericles::time::DevicePlan;
 use pericles::units::BodyUnits;
 use pericles_deck::{Body, Deck, LoadControl, Model, ModelWarning, Scheme};
 use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
@@ -128,6 +129,9 @@ pub struct Facts {
     /// The state of another run from which the run starts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub start: Option<StartFacts>,
+    /// The device that computes the steps, if it is not the processor of the machine.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub device: Option<DeviceFacts>,
     /// Vector instruction set of the force loops.
     pub instruction_set: &'static str,
     /// Properties of materials that are functions.
@@ -135,6 +139,52 @@ pub struct Facts {
     pub properties: Vec<PropertyFacts>,
     /// Warnings about the run.
     pub warnings: Vec<String>,
+}
+
+/// The device that computes the steps.
+#[derive(Debug, Clone, Serialize)]
+pub struct DeviceFacts {
+    /// Name.
+    pub name: String,
+    /// Interface to the driver.
+    pub interface: String,
+    /// Precision: double or mixed.
+    pub precision: &'static str,
+    /// Why this precision.
+    pub reason: &'static str,
+    /// Memory that the run needs on it, bytes.
+    pub memory: u64,
+}
+
+impl DeviceFacts {
+    fn of(plan: &DevicePlan) -> Self {
+        let DevicePlan {
+            name,
+            interface,
+            precision,
+            reason,
+            memory,
+        } = plan.clone();
+        Self {
+            name,
+            interface,
+            precision,
+            reason,
+            memory,
+        }
+    }
+
+    /// Returns a summary line.
+    pub fn line(&self) -> String {
+        format!(
+            "{} ({}), {} precision ({}), {} of its memory",
+            self.name,
+            self.interface,
+            self.precision,
+            self.reason,
+            bytes(self.memory)
+        )
+    }
 }
 
 /// The state of another run from which a run starts.
@@ -415,6 +465,7 @@ impl Facts {
                 checkpoint: path.display().to_string(),
                 t: *t,
             }),
+            device: assembly.device.as_ref().map(DeviceFacts::of),
             instruction_set: operator.instruction_set().name(),
             properties: assembly.properties.iter().map(PropertyFacts::of).collect(),
             warnings,

@@ -97,7 +97,7 @@ pub mod units;
 mod vibration;
 mod watch;
 
-pub use assembled::{Assembled, Caching, Means, readers};
+pub use assembled::{Assembled, Caching, Devices, Means, no_devices, readers};
 pub use audit::Audit;
 pub use build::{
     Assembly, BANDWIDTH, Conditions, Discretisation, ExactReference, FileError, Forecast, Grids,
@@ -111,7 +111,7 @@ pub use deck_text::DeckText;
 pub use error::RunError;
 pub use event::{Event, Tell};
 pub use export::{ExportFormat, Exported, Selection, export};
-pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts, PropertyFacts, StartFacts};
+pub use facts::{DeviceFacts, EndFacts, Facts, LoadFacts, PlaneFacts, PropertyFacts, StartFacts};
 pub use heat::{HeatBalance, HeatFacts, Inflow};
 pub use inputs::Inputs;
 pub use json::write_json;

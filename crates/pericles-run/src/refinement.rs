@@ -225,21 +225,23 @@ pub fn seconds_per_step(
     most: u64,
     longest: Duration,
 ) -> Result<f64, PericlesError> {
-    let mut step = || {
-        let t_next = state.t + dt;
-        integrator.step(system, state, t_next, Interrupt::never())
+    let batch = integrator.steps_at_once();
+    // Returns the number of steps.
+    let mut advance = |most: u64| {
+        let first = state.step;
+        let steps = (dt, batch.min(most));
+        integrator.advance(system, state, steps, Interrupt::never())?;
+        Ok::<u64, PericlesError>(state.step - first)
     };
     let mut most = most.min(MOST);
-    // The first step is slower because of cold caches and sleeping threads.
-    if most > 1 {
-        step()?;
-        most -= 1;
+    // The first steps are slower because of cold caches and sleeping threads.
+    if most > batch {
+        most -= advance(most)?;
     }
     let began = Instant::now();
     let mut steps = 0;
     while steps < most && began.elapsed() < longest {
-        step()?;
-        steps += 1;
+        steps += advance(most - steps)?;
     }
     Ok(began.elapsed().as_secs_f64() / steps as f64)
 }

@@ -180,6 +180,8 @@ pub(crate) struct Watched<'a> {
     pub(crate) integrator: &'a dyn Integrator,
     pub(crate) start: StartEnergy,
     pub(crate) dt: f64,
+    /// Number of steps since the last checks.
+    pub(crate) steps: u64,
     /// Ratio of the step to the largest step that is certainly stable at rest; `None` where no such step exists.
     pub(crate) step_ratio: Option<f64>,
 }
@@ -189,7 +191,7 @@ impl Watched<'_> {
     pub(crate) fn look(&self, last: bool) -> Result<(), Alarm> {
         self.look_at_volumes()?;
         self.look_at_yield()?;
-        let due = |every: u64| last || self.state.step.is_multiple_of(every);
+        let due = |every: u64| last || self.is_due(every);
         if due(OFTEN) {
             self.look_at_motion()?;
             self.look_at_order()?;
@@ -206,11 +208,17 @@ impl Watched<'_> {
         Ok(())
     }
 
+    /// Returns whether a multiple of a number of steps was reached since the last checks.
+    fn is_due(&self, every: u64) -> bool {
+        let step = self.state.step;
+        step / every > step.saturating_sub(self.steps) / every
+    }
+
     /// Checks for NaN, infinity and inverted points only.
     pub(crate) fn look_at_numbers(&self, last: bool) -> Result<(), Alarm> {
         self.look_at_volumes()?;
         self.look_at_yield()?;
-        if !(last || self.state.step.is_multiple_of(OFTEN)) {
+        if !(last || self.is_due(OFTEN)) {
             return Ok(());
         }
         self.finite_kinetic_energy().map(|_| ())

@@ -199,7 +199,7 @@ pub use accounts::Ledger;
 pub use archive::{Archive, Checkpointed, Values};
 pub use body::Body;
 pub use compatibility::{Need, Requirement, require};
-pub use error::{PericlesError, Result, UnreachableStrength, positive};
+pub use error::{DeviceError, PericlesError, Result, UnreachableStrength, positive};
 pub use guard::InstabilityCause;
 pub use interaction::{Configuration, Interaction, InteractionStep};
 pub use interrupt::{Interrupt, IterationProgress};
@@ -211,7 +211,7 @@ pub use simulation::{
 pub use step_end::{BreakingBond, Path, StepEnd};
 pub use step_kind::{StepKind, schemes_of};
 pub use stop::{Found, StopCondition, StopReason, StopTest, StopWhen};
-pub use system::System;
+pub use system::{System, SystemParts};
 pub use thermal::{
     Expandable, HeatedFactor, OfTemperature, Pointwise, Temperature, ThermalExpansion, YieldFactor,
 };

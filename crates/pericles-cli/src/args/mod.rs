@@ -22,7 +22,9 @@ pub(crate) use fit::FitArgs;
 pub(crate) use geometry::{ExportArgs, ExportFormat, MeshArgs, ViewArgs};
 pub(crate) use modes::ModesArgs;
 pub(crate) use plot::{Format, PlotArgs};
-pub(crate) use shared::{Caching, Execution, FromRun, Memory, Overrides, RunOptions, Threads};
+pub(crate) use shared::{
+    Caching, DeviceChoice, Execution, FromRun, Memory, Overrides, RunOptions, Threads,
+};
 pub(crate) use values::{Direction, Length, Pair};
 
 use values::{direction, instruction_set, length, pair, tolerance};
@@ -118,6 +120,12 @@ Results are written to ./<deck's name>-dispersion, then -2, -3, ..., or to the f
   wavevectors.csv   frequencies at the wave vectors given by --wavevector
   spectrum_*, peaks spectra and peaks measured with --measure")]
     Dispersion(DispersionArgs),
+    /// List the graphics processors with their precision and speed, for `--device` of `run`, `check` and `resume`
+    #[command(after_help = "\
+The speed is that of steps of a block of 64 000 points with bond-stretch bonds (horizon of three spacings), including the
+state that the host reads. Needs a program with graphics processors:
+  cargo build --release -p pericles-cli --features gpu")]
+    Devices(DevicesArgs),
     /// Compute the lowest natural frequencies and mode shapes of a deck's body
     #[command(after_help = "\
 The modes belong to the undeformed body with its constraints or, with --prestress, of the body under its static
@@ -297,6 +305,8 @@ pub(crate) struct CheckArgs {
     pub(crate) memory: Memory,
     #[command(flatten)]
     pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) device: DeviceChoice,
 }
 
 #[derive(Debug, Args)]
@@ -370,6 +380,13 @@ pub(crate) struct ResumeArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct DevicesArgs {
+    /// Write the list as JSON to a file; - for standard output
+    #[arg(long, value_name = "FILE")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct InfoArgs {
     /// The output folder of a run
     pub(crate) dir: PathBuf,
@@ -407,6 +424,8 @@ pub(crate) struct BenchArgs {
     pub(crate) json: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) device: DeviceChoice,
 }
 
 #[derive(Debug, Args)]

@@ -5,11 +5,13 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use pericles_deck::{DeviceKind, DevicePrecision, Processor};
 use pericles_run::sequence::last_step;
 use pericles_run::sweep::Settings;
 use pericles_run::{self as library, Deadline, Means, Origin, RunError, machine};
 
-use super::values::{threads, wall_time};
+use super::values::{device, device_precision, threads, wall_time};
+use crate::devices::devices;
 
 /// Overrides of deck keys.
 #[derive(Debug, Args)]
@@ -56,6 +58,8 @@ pub(crate) struct RunOptions {
     pub(crate) limits: Limits,
     #[command(flatten)]
     pub(crate) execution: Execution,
+    #[command(flatten)]
+    pub(crate) device: DeviceChoice,
 }
 
 impl RunOptions {
@@ -70,10 +74,49 @@ impl RunOptions {
 
     /// Returns the cache and memory limit for building a model.
     pub(crate) fn means(&self) -> Means {
-        Means {
+        self.device.with(Means {
             caching: self.caching.wanted(),
             memory: self.limits.memory.bytes(),
             ..Means::default()
+        })
+    }
+}
+
+/// The processor of the steps.
+#[derive(Debug, Args)]
+pub(crate) struct DeviceChoice {
+    /// Processor of the time steps: cpu, gpu, or gpu:N, graphics processor N of `pericles devices` [default: that of the deck]
+    #[arg(long, value_name = "DEVICE", value_parser = device)]
+    device: Option<Processor>,
+    /// Precision of a graphics processor: double or mixed [default: double if it has it]
+    #[arg(long, value_name = "PRECISION", value_parser = device_precision, requires = "device")]
+    precision: Option<DevicePrecision>,
+}
+
+impl DeviceChoice {
+    /// Returns the graphics processor that the command line wants, if it wants one.
+    pub(crate) fn graphics(&self) -> Option<Processor> {
+        let wanted = self.device?;
+        let precision = self.precision.unwrap_or_default();
+        (wanted.device == DeviceKind::Gpu).then_some(Processor {
+            precision,
+            ..wanted
+        })
+    }
+
+    /// Returns means with this choice.
+    pub(crate) fn with(&self, means: Means) -> Means {
+        let precise = |device: Processor| match self.precision {
+            Some(precision) => Processor {
+                precision,
+                ..device
+            },
+            None => device,
+        };
+        Means {
+            devices: devices(),
+            processor: self.device.map(precise),
+            ..means
         }
     }
 }

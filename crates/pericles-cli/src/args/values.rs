@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use pericles::operator::InstructionSet;
 use pericles::sum::max_norm;
+use pericles_deck::{DeviceKind, DevicePrecision, Processor};
 
 use crate::error::CliError;
 
@@ -35,6 +36,32 @@ impl Direction {
             given: self.given,
             dimension,
         })
+    }
+}
+
+/// Parses a processor: cpu, gpu or gpu:N.
+pub(super) fn device(text: &str) -> Result<Processor, String> {
+    let of = |device, adapter| Processor {
+        device,
+        adapter,
+        ..Processor::default()
+    };
+    match text.split_once(':') {
+        None if text == "cpu" => Ok(of(DeviceKind::Cpu, None)),
+        None if text == "gpu" => Ok(of(DeviceKind::Gpu, None)),
+        Some(("gpu", number)) if number.parse::<u64>().is_ok() => {
+            Ok(of(DeviceKind::Gpu, number.parse().ok()))
+        }
+        _ => Err("expected cpu, gpu or gpu:N with the number of a graphics processor".into()),
+    }
+}
+
+/// Parses the precision of a graphics processor.
+pub(super) fn device_precision(text: &str) -> Result<DevicePrecision, String> {
+    match text {
+        "double" => Ok(DevicePrecision::Double),
+        "mixed" => Ok(DevicePrecision::Mixed),
+        _ => Err("expected double or mixed".into()),
     }
 }
 

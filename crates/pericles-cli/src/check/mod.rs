@@ -41,11 +41,11 @@ use self::waves::plane_waves;
 pub(crate) fn check(args: &CheckArgs) -> Result<Exit, CliError> {
     let count_of_threads = args.threads.start()?;
     let deck = given::deck(&args.deck, &args.overrides.set)?;
-    let means = Means {
+    let means = args.device.with(Means {
         caching: args.caching.wanted(),
         memory: args.memory.bytes(),
         ..Means::default()
-    };
+    });
     let origin = args.origin.open(&means)?;
     let mut start = InitialState::from(origin.as_ref());
     let mut results = Vec::new();
@@ -136,6 +136,7 @@ fn check_source(
                 .with("loads_not_listed", more),
         );
     }
+    lines.extend(device(&facts));
     lines.extend(heat(&facts));
     lines.extend(contact(&facts));
     lines.extend(probes(&assembly));
@@ -237,16 +238,21 @@ fn run_time(
         evaluations: evaluated / (steps * facts.points as f64),
     };
     let seconds = step * facts.steps as f64;
-    let text = format!(
-        "about {} on {} ({}), without output",
-        duration(seconds),
-        threads(count_of_threads),
-        facts.instruction_set
-    );
+    let place = match &facts.device {
+        Some(device) => device.name.clone(),
+        None => format!("{} ({})", threads(count_of_threads), facts.instruction_set),
+    };
+    let text = format!("about {} on {place}, without output", duration(seconds));
     let line = Line::new("run time", text)
         .with("run_seconds", seconds)
         .with("threads", count_of_threads);
     Ok((line, cost))
+}
+
+/// Returns the line about the device that computes the steps.
+fn device(facts: &Facts) -> Option<Line> {
+    let device = facts.device.as_ref()?;
+    Some(Line::new("device", device.line()).with("device", json!(device)))
 }
 
 /// Returns the line about heat conduction.

@@ -51,6 +51,7 @@ impl Model {
         };
         self.output.check("output".into(), output, &mut check);
         self.checkpoint.check("checkpoint".into(), (), &mut check);
+        self.run.check("run".into(), (), &mut check);
         match check.problems.is_empty() {
             true => Ok(()),
             false => Err(BuildError::of(check.problems)),

@@ -185,6 +185,7 @@ pub fn assemble(
             .origin()
             .map(|origin| (origin.path().to_path_buf(), origin.time())),
         integrator,
+        device: None,
         frequency: steps.frequency,
         body_frequency: steps.body_frequency,
         dt: steps.dt,

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use pericles::observe::{Probe as PointProbe, TrackedCrack};
 use pericles::space::PointCloud;
-use pericles::time::{HighestFrequency, Integrator, State};
+use pericles::time::{DevicePlan, HighestFrequency, Integrator, State};
 use pericles::{PericlesError, Simulation, StopWhen, System};
 use pericles_deck::{Model, ModelWarning};
 use pericles_heat::SharedField;
@@ -54,6 +54,8 @@ pub struct Assembly {
     pub origin: Option<(PathBuf, f64)>,
     /// The scheme.
     pub integrator: Box<dyn Integrator>,
+    /// What the processor of the steps needs, if it is not that of the machine.
+    pub device: Option<DevicePlan>,
     /// The frequency that limits the step at the start: the highest, except for multirate schemes; `None` without
     /// stiffness, if the deck gives the step.
     pub frequency: Option<HighestFrequency>,

@@ -205,9 +205,8 @@ pub(crate) fn run_all(
 ) -> Vec<Result<Ending, RunError>> {
     let at_once = settings.at_once(members.len());
     let means = Means {
-        caching: settings.means.caching.clone(),
         memory: settings.means.memory / at_once as u64,
-        comm: settings.means.comm.clone(),
+        ..settings.means.clone()
     };
     let next = AtomicUsize::new(0);
     let worker = || {

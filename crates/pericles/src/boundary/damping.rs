@@ -140,6 +140,23 @@ impl DampingLayer {
         self.points.len()
     }
 
+    /// Returns the points of the layer, each with its damping σ, 1/s.
+    pub fn damped(&self) -> impl Iterator<Item = (usize, f64)> {
+        let points = self.points.iter().map(|&i| i as usize);
+        points.zip(self.damping.iter().copied())
+    }
+
+    /// Accelerations due to the damping at the last accepted state, m/s²: component c of the k-th point of the layer is
+    /// entry c · (points of the layer) + k.
+    pub fn pull_mut(&mut self) -> &mut [f64] {
+        &mut self.pull
+    }
+
+    /// Returns [`DampingLayer::pull_mut`] for reading.
+    pub fn pull(&self) -> &[f64] {
+        &self.pull
+    }
+
     /// Calls `visit(entry of the state's arrays, entry of the layer's arrays, index of the point in the layer)` for
     /// every entry of the layer.
     fn each(&self, mut visit: impl FnMut(usize, usize, usize)) {
@@ -294,6 +311,14 @@ impl Boundary for DampingLayer {
             impulses.push(mass * (v[entry] - before));
         });
         self.total(&impulses, &works)
+    }
+
+    fn as_layer(&self) -> Option<&DampingLayer> {
+        (self.kind == StepKind::EndOfStep).then_some(self)
+    }
+
+    fn as_layer_mut(&mut self) -> Option<&mut DampingLayer> {
+        (self.kind == StepKind::EndOfStep).then_some(self)
     }
 
     fn step_kinds(&self) -> &'static [StepKind] {

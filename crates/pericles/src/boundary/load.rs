@@ -120,7 +120,7 @@ impl Load {
     }
 
     /// Returns g(t) while the load acts, else zero.
-    pub(crate) fn factor(&self, t: f64) -> f64 {
+    pub fn factor(&self, t: f64) -> f64 {
         if (self.window[0]..=self.window[1]).contains(&t) {
             self.function.value(t)
         } else {
@@ -128,8 +128,16 @@ impl Load {
         }
     }
 
+    /// Returns whether the load is a product of an amplitude of each point and [`Load::factor`].
+    pub fn is_separable(&self) -> bool {
+        match self.density {
+            LoadDensity::Uniform(_) | LoadDensity::PerPoint(_) => true,
+            LoadDensity::Field { .. } | LoadDensity::Values(_) => false,
+        }
+    }
+
     /// Amplitude along axis c on the k-th loaded point.
-    pub(crate) fn amplitude(&self, c: usize, k: usize, t: f64) -> f64 {
+    pub fn amplitude(&self, c: usize, k: usize, t: f64) -> f64 {
         match &self.density {
             LoadDensity::Uniform(density) => density[c],
             LoadDensity::PerPoint(densities) => densities[c * self.points.len() + k],

@@ -14,7 +14,7 @@ pub use damping::{DampedSteps, DampingLayer, DampingProfile};
 pub use function::{TimeCourse, TimeFunction};
 pub use load::{ALWAYS, FieldFunction, Load, LoadDensity};
 pub use loading::ProportionalLoading;
-pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
+pub use motion::{AxisMotion, MotionComponent, MotionKind, PrescribedMotion, Trajectory};
 pub use rayleigh::{RayleighDamping, RayleighRates, Stiffness, StiffnessProduct};
 pub use table::TimeTable;
 pub use values::PointValues;
@@ -145,6 +145,16 @@ pub trait Boundary: Checkpointed + Send + Sync {
     fn damp(&self, dt: f64, v: &mut [f64]) -> Exchange {
         let _ = (dt, v);
         Exchange::default()
+    }
+
+    /// Returns the boundary as a damping layer of explicit steps, if it is one.
+    fn as_layer(&self) -> Option<&DampingLayer> {
+        None
+    }
+
+    /// Returns [`Boundary::as_layer`] for modification.
+    fn as_layer_mut(&mut self) -> Option<&mut DampingLayer> {
+        None
     }
 
     /// Returns the action within an implicit step; `None` for boundaries that only explicit schemes support.

@@ -45,6 +45,19 @@ pub enum AxisMotion {
     Values(Arc<dyn PointValues>),
 }
 
+/// A prescribed component of a point: its displacement is start + amplitude · unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MotionComponent {
+    /// Entry of the state's arrays.
+    pub entry: usize,
+    /// Entry of the reactions.
+    pub slot: usize,
+    /// Amplitude, m or m/s.
+    pub amplitude: f64,
+    /// Displacement to which the motion adds, m.
+    pub start: f64,
+}
+
 /// Constraint on a set of points along one or more axes, as a closed function of time: displacement and velocity
 /// are exact at the end of every step.
 #[derive(Debug, Clone)]
@@ -338,7 +351,7 @@ impl PrescribedMotion {
 
     /// Displacement beyond the initial one (order 0), velocity (1) or acceleration (2) at time t for unit
     /// amplitude.
-    fn unit(&self, order: usize, t: f64) -> f64 {
+    pub fn unit(&self, order: usize, t: f64) -> f64 {
         let g = &self.function;
         match order + usize::from(self.kind == MotionKind::Displacement) {
             0 => g.integral(t),
@@ -346,6 +359,37 @@ impl PrescribedMotion {
             2 => g.derivative(t),
             _ => g.second_derivative(t),
         }
+    }
+
+    /// Returns the prescribed components that no other constraint prescribes; `None` if the motion is not a product of
+    /// amplitudes and [`PrescribedMotion::unit`].
+    pub fn components(&self, cloud_len: usize) -> Option<Vec<MotionComponent>> {
+        let mut components = Vec::new();
+        for (axis, c) in self.axes().enumerate() {
+            for (k, &i) in self.points.iter().enumerate() {
+                let amplitude = match self.along[c].as_ref()? {
+                    AxisMotion::Uniform(amplitude) => *amplitude,
+                    AxisMotion::PerPoint(amplitudes) => amplitudes[k],
+                    AxisMotion::Trajectory { .. } | AxisMotion::Values(_) => return None,
+                };
+                let slot = axis * self.points.len() + k;
+                if self.shared.binary_search(&(slot as u32)).is_err() {
+                    components.push(MotionComponent {
+                        entry: c * cloud_len + i as usize,
+                        slot,
+                        amplitude,
+                        start: self.start[slot],
+                    });
+                }
+            }
+        }
+        Some(components)
+    }
+
+    /// Reaction force densities of the prescribed components at the last accepted state, N/m³, by
+    /// [`MotionComponent::slot`].
+    pub fn reactions_mut(&mut self) -> &mut [f64] {
+        &mut self.reaction
     }
 
     /// Calls `set(entry of the state's arrays, slot, value)` for every prescribed component of the points of `on`

@@ -2,7 +2,7 @@
 
 use super::{
     BondForm, BondView, Breakable, DilatationView, Force, Limit, LinearOperator, LocalForce,
-    PlasticView, SplitForce, StressView,
+    PlasticView, SplitForce, StencilForce, StressView,
 };
 use crate::error::{PericlesError, Result};
 use crate::neighbourhood::BondSet;
@@ -34,6 +34,8 @@ pub struct Capabilities<'a> {
     /// Whether the force depends on the history of states. Schemes then end a step at each accepted state,
     /// even if no bond can break.
     pub path_dependent: bool,
+    /// The force as data, if it consists of the bonds of a stencil at constant temperature.
+    pub stencil: Option<&'a dyn StencilForce>,
     /// Thermal expansion of the material.
     pub thermal: Option<&'a ThermalExpansion>,
 }

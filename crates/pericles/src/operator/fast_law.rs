@@ -1,5 +1,6 @@
 //! Pair laws in vectorised loops: the forces of [`PairForce`] without roots and divisions where possible.
 
+use super::StencilLaw;
 use crate::lanes::Vector;
 use crate::material::{
     Approximated, BondStretch, CubicBond, CubicFactor, CubicSofteningBond, GreenBond, LinearBond,
@@ -48,6 +49,9 @@ impl<T: Vector, const D: usize> FixedBond<T, D> {
 /// if t > threshold(s₀), and its force can be written as a function of t times a direction. The default
 /// methods use [`PairForce`].
 pub trait VectorLaw: PairForce {
+    /// The law in the data of stencils, if back ends that evaluate stencils themselves have it.
+    const STENCIL: Option<StencilLaw> = None;
+
     /// Largest |t| for which [`VectorLaw::add_force`] is exact to round-off.
     const REACH: f64 = f64::INFINITY;
 
@@ -110,6 +114,8 @@ pub(super) const PHI: [f64; 7] = [
 const SHORT_PHI: f64 = 1e-8;
 
 impl VectorLaw for BondStretch {
+    const STENCIL: Option<StencilLaw> = Some(StencilLaw::BondStretch);
+
     const REACH: f64 = 0.02;
 
     /// t = η·(2ξ+η)/|ξ|².
@@ -177,6 +183,8 @@ impl VectorLaw for BondStretch {
 }
 
 impl VectorLaw for LinearBond {
+    const STENCIL: Option<StencilLaw> = Some(StencilLaw::Linear);
+
     /// t = ξ·η/|ξ|².
     #[inline(always)]
     fn strain<T: Vector, const D: usize>(bond: &FixedBond<T, D>, eta: [T; D]) -> T {

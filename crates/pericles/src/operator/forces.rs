@@ -182,6 +182,7 @@ impl Force for Forces {
             single_precision: self
                 .iter()
                 .any(|force| force.capabilities().single_precision),
+            stencil: None,
             path_dependent: self.iter().any(|force| force.capabilities().path_dependent),
         }
     }

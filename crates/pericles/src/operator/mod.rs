@@ -47,6 +47,7 @@ pub mod records;
 pub mod rows;
 mod springs;
 mod state_based;
+mod stencil_force;
 mod thresholds;
 mod two_pass;
 mod view;
@@ -70,6 +71,9 @@ pub use own_law::PlainLaw;
 pub use springs::{LatticeSpring, LatticeSprings};
 pub use state_based::{
     FiniteStrain, Kinematics, LinearSolidBody, LinearSolidForce, LinearSolidGrid, SmallStrain,
+};
+pub use stencil_force::{
+    CriticalStretches, StencilData, StencilForce, StencilLaw, StiffnessFactors,
 };
 pub use two_pass::{AtPoints, Neighbours, TwoPass, TwoPassForce, with_neighbours};
 pub use view::{BondAt, BondValues, BondView, DilatationView, PlasticView, StressView};
@@ -139,6 +143,11 @@ pub trait Force: Checkpointed + Send + Sync {
 
     /// Returns [`Capabilities::split`] for modification.
     fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
+        None
+    }
+
+    /// Returns [`Capabilities::stencil`] for modification.
+    fn stencil_mut(&mut self) -> Option<&mut dyn StencilForce> {
         None
     }
 

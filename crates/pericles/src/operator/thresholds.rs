@@ -1,5 +1,6 @@
 //! Critical stretches of bonds as a function of the materials of their ends.
 
+use super::CriticalStretches;
 use crate::material::{MaterialPairs, PairForce};
 
 /// Critical stretches and strain thresholds as a function of the materials of both ends of a bond.
@@ -31,6 +32,15 @@ impl PairThresholds {
         match &self.table[..] {
             [] => (self.threshold)(self.classes.critical_stretch(a, b)),
             table => table[self.classes.class(a, b)],
+        }
+    }
+
+    /// Returns the critical stretches as data.
+    pub fn data(&self) -> CriticalStretches<'_> {
+        CriticalStretches::Pairs {
+            material: self.classes.of_point(),
+            table: self.classes.critical_stretches(),
+            factors: self.classes.strengths(),
         }
     }
 

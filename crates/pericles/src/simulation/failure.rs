@@ -103,7 +103,7 @@ impl Simulation {
         if self.integrator.is_static() {
             return self.no_static_state(source, broken);
         }
-        let watched = self.watched();
+        let watched = self.watched(1);
         let fastest = watched.fastest();
         let speed = watched.speed(fastest);
         let (point, place, speed) = self.located(speed, fastest, speed);

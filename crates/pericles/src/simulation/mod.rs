@@ -277,21 +277,20 @@ impl Simulation {
             self.show(false)?;
         }
         while self.state.step < self.steps {
-            // Computed from the step number, so that rounding errors of the time do not add up.
-            let t_next = (self.state.step + 1) as f64 * self.dt;
+            let first = self.state.step;
             let broken = self.system.operator().broken_bonds();
-            match self.step(t_next, interrupt) {
+            match self.step(self.steps_to_next_visit(), interrupt) {
                 Err(PericlesError::Interrupted) => return Ok(Outcome::Stopped),
                 Err(source) => {
                     let error = self.stuck(source, broken);
-                    self.show_failed(t_next);
+                    self.show_failed((self.state.step + 1) as f64 * self.dt);
                     return Err(error);
                 }
                 Ok(()) => {}
             }
             self.stopped = self.met()?;
             let last = self.state.step == self.steps || self.stopped.is_some();
-            self.guard(last)?;
+            self.guard(self.state.step - first, last)?;
             self.show(last)?;
             if self.stopped.is_some() {
                 break;
@@ -306,6 +305,17 @@ impl Simulation {
             .try_for_each(|scheduled| scheduled.observer.finish());
         self.agreed(finished)?;
         Ok(Outcome::Finished)
+    }
+
+    /// Returns the number of steps to the next state that an observer sees, at most the number that the scheme takes at once.
+    fn steps_to_next_visit(&self) -> u64 {
+        let (step, dt, steps) = (self.state.step, self.dt, self.steps);
+        let seen = |step: u64| {
+            let mut schedules = self.observers.iter().map(|scheduled| scheduled.schedule);
+            schedules.any(|schedule| schedule.is_due(step, dt, steps))
+        };
+        let most = self.integrator.steps_at_once().min(steps - step);
+        (1..most).find(|&k| seen(step + k)).unwrap_or(most.max(1))
     }
 
     /// Waits until the observers have written what they have seen. Otherwise a checkpoint may refer to output that
@@ -388,8 +398,9 @@ impl Simulation {
         Err(PericlesError::BadArchive { reason })
     }
 
-    fn watched(&self) -> Watched<'_> {
+    fn watched(&self, steps: u64) -> Watched<'_> {
         Watched {
+            steps,
             system: &self.system,
             state: &self.state,
             integrator: &*self.integrator,
@@ -420,8 +431,8 @@ impl Simulation {
         Some(self.dt / limiting.stable_step(limit, 1.0))
     }
 
-    fn guard(&mut self, last: bool) -> Result<(), SimulationError> {
-        let watched = self.watched();
+    fn guard(&mut self, steps: u64, last: bool) -> Result<(), SimulationError> {
+        let watched = self.watched(steps);
         let looked = if self.instability.is_some() {
             watched.look_at_numbers(last)
         } else {

@@ -6,10 +6,10 @@ use crate::error::PericlesError;
 use crate::interrupt::Interrupt;
 
 impl Simulation {
-    /// Performs one step; undoes it if it is interrupted, or if the evaluation of a load or motion has failed.
+    /// Performs up to `steps` steps; undoes them if they are interrupted, or if the evaluation of a load or motion has failed.
     pub(super) fn step(
         &mut self,
-        t_next: f64,
+        steps: u64,
         interrupt: Interrupt<'_>,
     ) -> Result<(), PericlesError> {
         let evaluated = self.system.evaluated_points();
@@ -22,8 +22,13 @@ impl Simulation {
         });
         let mut stepped = self
             .integrator
-            .step(&mut self.system, &mut self.state, t_next, interrupt)
-            .and_then(|()| self.system.end_fields(t_next));
+            .advance(
+                &mut self.system,
+                &mut self.state,
+                (self.dt, steps),
+                interrupt,
+            )
+            .and_then(|()| self.system.end_fields(self.state.t));
         if fallible && self.system.has_failed() {
             stepped = Err(PericlesError::Interrupted);
         }

@@ -44,6 +44,16 @@ pub struct System {
     pub(crate) coarse_breaks: Counter,
 }
 
+/// The parts of a system whose state a processor changes that computes whole steps.
+pub struct SystemParts<'a> {
+    /// The sum of the internal forces.
+    pub force: &'a mut dyn Force,
+    /// The constraints.
+    pub motions: &'a mut [PrescribedMotion],
+    /// The boundaries.
+    pub boundaries: &'a mut [Box<dyn Boundary>],
+}
+
 impl System {
     /// A free body without loads.
     ///
@@ -176,6 +186,11 @@ impl System {
         self.evaluated.get()
     }
 
+    /// Adds evaluations of the whole body by another processor.
+    pub fn count_evaluations(&mut self, evaluations: u64) {
+        self.evaluated.add(evaluations * self.points() as u64);
+    }
+
     /// Resets the number of evaluations after a step is undone.
     pub(crate) fn set_evaluated_points(&mut self, points: u64) {
         self.evaluated = points.into();
@@ -184,6 +199,15 @@ impl System {
     /// Returns whether there are boundaries with a state of their own.
     pub fn has_boundaries(&self) -> bool {
         !self.boundaries.is_empty()
+    }
+
+    /// The parts of the system whose state another processor changes.
+    pub fn parts_mut(&mut self) -> SystemParts<'_> {
+        SystemParts {
+            force: self.forces.sum_mut(),
+            motions: &mut self.motions,
+            boundaries: &mut self.boundaries,
+        }
     }
 
     /// The boundaries.

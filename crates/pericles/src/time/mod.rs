@@ -1,5 +1,6 @@
 //! Time integrators: u(t) ↦ u(t + dt).
 
+mod device;
 mod embedded;
 mod ends;
 mod fine_region;
@@ -18,6 +19,7 @@ mod verlet;
 mod zone;
 mod zones;
 
+pub use device::{Device, DevicePlan};
 pub use embedded::AdaptiveRungeKutta;
 pub use fine_region::{Fine, Follow};
 pub use frequency::{
@@ -205,6 +207,29 @@ pub trait Integrator: Checkpointed + Send {
     /// Prepares the initial state: prescribed values and initial acceleration.
     fn start(&mut self, system: &mut System, state: &mut State) {
         state.start(system);
+    }
+
+    /// Largest number of steps that [`Integrator::advance`] takes at once: 1, except for processors that compute several
+    /// steps before the host reads the state.
+    fn steps_at_once(&self) -> u64 {
+        1
+    }
+
+    /// Advances by up to `steps` steps, at most [`Integrator::steps_at_once`]; step k ends at time k `dt`. Returns with at
+    /// least one more complete step. Errors are those of [`Integrator::step`].
+    ///
+    /// # Errors
+    /// Those of [`Integrator::step`], for the step after the last complete one.
+    fn advance(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        (dt, steps): (f64, u64),
+        interrupt: Interrupt<'_>,
+    ) -> Result<()> {
+        let _ = steps;
+        let t_next = (state.step + 1) as f64 * dt;
+        self.step(system, state, t_next, interrupt)
     }
 
     /// Advances from `state.t` to `t_next`.

@@ -95,6 +95,11 @@ impl Lattice {
         &self.precut[self.precut.partition_point(|&(group, _)| group < first)..]
     }
 
+    /// Returns the places whose bonds never break, one byte per chunk of places; `None` if there are none.
+    pub fn held_places(&self) -> Option<&[u8]> {
+        self.held.as_deref()
+    }
+
     /// Returns the bonds of a chunk and offset that may break.
     pub fn breakable(&self, chunk: &Chunk, offset: usize) -> u8 {
         let Some(held) = &self.held else { return 0xFF };

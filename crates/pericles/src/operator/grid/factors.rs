@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::numbers::GridNumber;
 use crate::lanes::LANES;
 use crate::neighbourhood::{Form, Lattice, Neighbourhood};
+use crate::operator::StiffnessFactors;
 
 /// Stiffness of bonds relative to the stencil, per chunk.
 ///
@@ -83,6 +84,14 @@ impl Factors<f64> {
                 .map(|&value| f32::rounded(value))
                 .collect(),
             largest: self.largest.clone(),
+        }
+    }
+
+    /// Returns the factors as data.
+    pub fn data(&self) -> StiffnessFactors<'_> {
+        StiffnessFactors {
+            rows: &self.rows,
+            values: &self.values,
         }
     }
 

@@ -2,17 +2,19 @@
 
 use std::sync::PoisonError;
 
+use super::factors::Factors;
 use super::force::GridForce;
 use super::kernels::{energy_chunks, force_chunks, force_chunks_in_floats, tangent_chunks};
 use super::padded::Frame;
 use super::thresholds::PlaceThresholds;
 use crate::domain::Field;
 use crate::lanes::LANES;
-use crate::neighbourhood::Form;
+use crate::neighbourhood::{Form, Lattice, Neighbourhood};
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{
-    Breakable, Capabilities, Force, InstructionSet, LatticeSpring, LatticeSprings, LinearOperator,
-    Linearity, PointSubset, SplitForce,
+    Breakable, Capabilities, CriticalStretches, Force, InstructionSet, LatticeSpring,
+    LatticeSprings, LinearOperator, Linearity, PointSubset, SplitForce, StencilData, StencilForce,
+    StencilLaw,
 };
 use crate::step_end::StepEnd;
 use crate::thermal::Expandable;
@@ -185,6 +187,7 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
             stress: None,
             plastic: None,
             path_dependent: false,
+            stencil: (L::STENCIL.is_some() && self.expansion.is_none()).then_some(self),
             thermal: self.expansion.as_ref(),
         }
     }
@@ -199,6 +202,31 @@ impl<L: VectorLaw, const D: usize> Force for GridForce<L, D> {
 
     fn split_mut(&mut self) -> Option<&mut dyn SplitForce> {
         self.floats.is_none().then_some(self)
+    }
+
+    fn stencil_mut(&mut self) -> Option<&mut dyn StencilForce> {
+        self.capabilities().stencil?;
+        Some(self)
+    }
+}
+
+impl<L: VectorLaw, const D: usize> StencilForce for GridForce<L, D> {
+    fn data(&self) -> StencilData<'_> {
+        let offsets = self.doubles.offsets().iter();
+        StencilData {
+            law: L::STENCIL.unwrap_or(StencilLaw::BondStretch),
+            bonds: &self.bonds,
+            stiffness: offsets.map(|offset| offset.stiffness).collect(),
+            factors: self.doubles.factors().map(Factors::data),
+            critical: match &self.pairs {
+                None => CriticalStretches::Uniform(self.critical_stretch),
+                Some(pairs) => pairs.data(),
+            },
+        }
+    }
+
+    fn bonds_mut(&mut self) -> &mut Neighbourhood<Lattice> {
+        &mut self.bonds
     }
 }
 

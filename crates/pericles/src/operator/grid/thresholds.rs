@@ -3,6 +3,7 @@
 use crate::lanes::LANES;
 use crate::material::{MaterialPairs, PairForce};
 use crate::neighbourhood::Lattice;
+use crate::operator::CriticalStretches;
 use crate::operator::thresholds::PairThresholds;
 
 /// Thresholds by the materials at the places of the padded rows.
@@ -62,6 +63,11 @@ impl PlaceThresholds {
     pub fn of_part<L: PairForce>(&self, part: f64, place: usize, shift: isize) -> [f64; LANES] {
         self.ends(place, shift)
             .map(|[a, b]| L::threshold(part * self.pairs.critical_stretch(a, b)))
+    }
+
+    /// Returns the critical stretches as data.
+    pub fn data(&self) -> CriticalStretches<'_> {
+        self.pairs.data()
     }
 
     /// Returns the critical stretch of a bond between two places.

@@ -124,6 +124,7 @@ impl<L: VectorLaw, const D: usize> Force for BondForce<L, D> {
             stress: None,
             plastic: None,
             path_dependent: false,
+            stencil: None,
             thermal: self.heat.as_ref().map(|heat| &heat.expansion),
         }
     }

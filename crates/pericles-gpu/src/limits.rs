@@ -1,0 +1,79 @@
+//! What devices do not compute.
+
+use pericles::StepKind;
+use pericles::System;
+use pericles::time::Integrator;
+
+use crate::error::GpuError;
+
+/// A feature of runs that devices do not compute, with the text of the message.
+struct Limit {
+    reason: &'static str,
+    applies: fn(&System, &dyn Integrator) -> bool,
+}
+
+/// All limits.
+const LIMITS: &[Limit] = &[
+    Limit {
+        reason: "the scheme is not velocity Verlet",
+        applies: |_, integrator| integrator.step_kind() != StepKind::EndOfStep,
+    },
+    Limit {
+        reason: "the body is divided among several processes",
+        applies: |system, _| system.domain().is_divided(),
+    },
+    Limit {
+        reason: "the force is not that of linear or bond-stretch bonds on a regular lattice at constant temperature (state-based materials, softening, meshes, listed points and surfaces are computed by the processor)",
+        applies: |system, _| system.operator().capabilities().stencil.is_none(),
+    },
+    Limit {
+        reason: "it has contact or impactors",
+        applies: |system, _| system.interactions().next().is_some(),
+    },
+    Limit {
+        reason: "it computes a temperature",
+        applies: |system, _| system.fields().next().is_some(),
+    },
+    Limit {
+        reason: "a load is not a function of the position times a function of time",
+        applies: |system, _| system.loads().iter().any(|load| !load.is_separable()),
+    },
+    Limit {
+        reason: "its loads grow in proportion to a controlled quantity",
+        applies: |system, _| system.load_factor().is_some(),
+    },
+    Limit {
+        reason: "a prescribed motion is not a function of the position times a function of time",
+        applies: |system, _| {
+            let mut motions = system.motions().iter();
+            motions.any(|motion| motion.components(system.points()).is_none())
+        },
+    },
+    Limit {
+        reason: "it has a boundary other than damping layers",
+        applies: |system, _| {
+            system
+                .boundaries()
+                .any(|boundary| boundary.as_layer().is_none())
+        },
+    },
+];
+
+/// Returns the reasons why devices do not compute a run.
+pub fn unsupported(system: &System, integrator: &dyn Integrator) -> Vec<&'static str> {
+    let limits = LIMITS
+        .iter()
+        .filter(|limit| (limit.applies)(system, integrator));
+    limits.map(|limit| limit.reason).collect()
+}
+
+/// Checks that devices compute a run.
+///
+/// # Errors
+/// The first reason why they do not.
+pub(crate) fn require(system: &System, integrator: &dyn Integrator) -> Result<(), GpuError> {
+    match unsupported(system, integrator).first() {
+        None => Ok(()),
+        Some(&reason) => Err(GpuError::NotSupported { reason }),
+    }
+}
