@@ -36,7 +36,7 @@ pub(crate) struct Context {
 }
 
 /// Bindings of the shaders that are arrays.
-pub(crate) const ARRAYS: u32 = 11;
+pub(crate) const ARRAYS: u32 = 12;
 
 /// Returns the graphics processors of the machine, in the order of their numbers: hardware before software.
 pub fn adapters() -> Vec<Adapter> {

@@ -23,6 +23,7 @@ pub(crate) enum Array {
     Lost,
     Control,
     Books,
+    Pressures,
     Lists,
     Numbers,
     Amplitudes,
@@ -38,6 +39,7 @@ impl Array {
         Self::Lost,
         Self::Control,
         Self::Books,
+        Self::Pressures,
         Self::Lists,
         Self::Numbers,
         Self::Amplitudes,
@@ -52,6 +54,8 @@ impl Array {
 /// The shaders of a step.
 struct Pipelines {
     force: wgpu::ComputePipeline,
+    /// The pass over the points of a solid, and the images of its result.
+    solid: Option<[wgpu::ComputePipeline; 2]>,
     turn: wgpu::ComputePipeline,
     guide: wgpu::ComputePipeline,
     load: wgpu::ComputePipeline,
@@ -109,6 +113,10 @@ pub(crate) fn sizes(
         real * body.places,
         4,
         real * entries.books(),
+        match body.is_solid() {
+            true => real * (body.pitch() + body.margin),
+            false => 0,
+        },
         4 * lengths(lists.collect()),
         real * lengths(numbers.collect()),
         state * lengths(amplitudes.collect()),
@@ -178,7 +186,7 @@ impl Arrays {
             entries: &bindings,
         });
         let text = shader::text(body, entries, context.precision);
-        let pipelines = pipelines(device, &layout, text);
+        let pipelines = pipelines(device, &layout, text, body.is_solid());
         let sides = shader::group(body.dimension);
         let arrays = Self {
             groups: [0, 1, 2].map(|axis| (body.shape[axis] as u32).div_ceil(sides[axis])),
@@ -328,6 +336,12 @@ impl Arrays {
                 turn(0, &mut call);
             }
             for number in steps {
+                if let Some([dilate, repeat]) = &of.solid {
+                    call(dilate, all, number);
+                    if images > 0 {
+                        call(repeat, some(images), number);
+                    }
+                }
                 call(&of.force, all, number);
                 if loaded > 0 {
                     call(&of.load, some(loaded), number);
@@ -377,7 +391,12 @@ fn layout(device: &wgpu::Device) -> wgpu::BindGroupLayout {
     })
 }
 
-fn pipelines(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, text: String) -> Pipelines {
+fn pipelines(
+    device: &wgpu::Device,
+    layout: &wgpu::BindGroupLayout,
+    text: String,
+    is_solid: bool,
+) -> Pipelines {
     let descriptor = wgpu::ShaderModuleDescriptor {
         label: Some("pericles"),
         source: wgpu::ShaderSource::Wgsl(text.into()),
@@ -404,6 +423,7 @@ fn pipelines(device: &wgpu::Device, layout: &wgpu::BindGroupLayout, text: String
     };
     Pipelines {
         force: pipeline("force"),
+        solid: is_solid.then(|| [pipeline("dilate"), pipeline("repeat_pressures")]),
         turn: pipeline("turn"),
         guide: pipeline("guide"),
         load: pipeline("load"),

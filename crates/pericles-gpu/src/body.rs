@@ -4,7 +4,7 @@
 //! away; see [`GridLayout`].
 
 use pericles::neighbourhood::{GridLayout, Lattice, Neighbourhood};
-use pericles::operator::{CriticalStretches, StencilData, StencilLaw};
+use pericles::operator::{CriticalStretches, StencilData, StencilLaw, StencilMaterial};
 use pericles::{PointScalar, System};
 
 use crate::precision::Units;
@@ -26,7 +26,7 @@ pub(crate) struct Bond {
     pub square: f64,
     /// 1/|ξ|².
     pub inverse_square: f64,
-    /// c α κ V/(|ξ| ρ), with the density of the first point.
+    /// c α κ V/(|ξ| ρ), with the density of the first point; of a solid its weight ω relative to the largest one.
     pub stiffness: f64,
 }
 
@@ -58,8 +58,9 @@ pub(crate) struct Body {
     pub law: StencilLaw,
     pub bonds: Vec<Bond>,
     pub critical: Critical,
-    pub has_factors: bool,
     pub has_densities: bool,
+    /// Constants of the material.
+    constants: Constants,
     /// Directed bonds of the body.
     pub directed_bonds: u64,
     /// Place of each point.
@@ -69,15 +70,122 @@ pub(crate) struct Body {
     pub units: Units,
     /// Density of each point relative to that of the first one, inverted; by places.
     densities: Vec<f64>,
+    /// ξ and weight of each offset, for loops over offsets.
+    offsets: Vec<f64>,
     /// Critical stretches of pairs of materials.
     table: Vec<f64>,
     /// Factors of the critical stretches, by places.
     strengths: Vec<f64>,
     /// Flags of places without constraints.
     flags: Vec<u32>,
+}
+
+/// Constants of a material in the units of the device.
+#[derive(Debug)]
+struct Constants {
+    /// c α κ V/(|ξ| ρ) of the offsets; of a solid ω relative to the largest.
+    offsets: Vec<f64>,
     /// Row of factors of each chunk of places.
     factor_rows: Vec<u32>,
     factors: Vec<f64>,
+    /// D/m, A/m, B/m and A/D of a solid, by places.
+    solid: [Vec<f64>; 4],
+}
+
+/// Critical stretches by materials and places.
+#[derive(Default)]
+struct Limits<'a> {
+    materials: &'a [u8],
+    table: Vec<f64>,
+    strengths: Vec<f64>,
+}
+
+impl Constants {
+    /// Collects the constants of a material with the density `first` of the first point.
+    fn new(
+        data: &StencilData<'_>,
+        (place_of, images): (&[u32], &[[u32; 2]]),
+        first: f64,
+        units: Units,
+    ) -> Self {
+        let (layout, stencil) = (data.bonds.form().layout(), data.bonds.form().stencil());
+        let places = layout.places();
+        let per_acceleration = units.time * units.time / first;
+        let mut constants = Self {
+            offsets: Vec::new(),
+            factor_rows: Vec::new(),
+            factors: Vec::new(),
+            solid: [const { Vec::new() }; 4],
+        };
+        match &data.material {
+            StencilMaterial::Bonds { stiffness, factors } => {
+                if let Some(of_chunks) = factors {
+                    constants.factor_rows = vec![0; places / LANES];
+                    for (chunk, &row) in layout.chunks().iter().zip(of_chunks.rows) {
+                        constants.factor_rows[chunk.place as usize] = row;
+                    }
+                    constants.factors = of_chunks.values.to_vec();
+                }
+                let per_length = |k: usize| stiffness[k] / stencil.lengths()[k];
+                let per_density = |k| per_length(k) / first * (units.time * units.time);
+                constants.offsets = (0..stencil.len()).map(per_density).collect();
+            }
+            StencilMaterial::Solid(of) => {
+                let largest = of.weights.iter().copied().fold(0.0, f64::max);
+                let square = units.length * units.length;
+                let lists = [
+                    (of.dilatation, largest * square),
+                    (of.pressure, largest * per_acceleration),
+                    (of.stiffness, largest * per_acceleration),
+                    (of.bulk, per_acceleration / square),
+                ];
+                constants.solid = lists.map(|(of_points, factor)| {
+                    let mut of_places = vec![0.0; places];
+                    for (&place, value) in place_of.iter().zip(of_points) {
+                        of_places[place as usize] = value * factor;
+                    }
+                    for &[image, source] in images {
+                        of_places[image as usize] = of_places[source as usize];
+                    }
+                    of_places
+                });
+                let weights = of.weights.iter();
+                constants.offsets = weights.map(|weight| weight / largest).collect();
+            }
+        }
+        constants
+    }
+}
+
+/// Returns the critical stretches of a stencil.
+fn critical(stretches: &CriticalStretches) -> (Critical, Limits<'_>) {
+    match stretches {
+        CriticalStretches::Uniform(stretch) => (Critical::Uniform(*stretch), Limits::default()),
+        CriticalStretches::Pairs {
+            material,
+            table,
+            factors,
+        } => {
+            let least = |numbers: &[f64]| numbers.iter().copied().fold(f64::INFINITY, f64::min);
+            // Places without points have no factor.
+            let used = factors.iter().copied().filter(|factor| *factor > 0.0);
+            let weakest = match factors.is_empty() {
+                true => 1.0,
+                false => used.fold(f64::INFINITY, f64::min),
+            };
+            let critical = Critical::Pairs {
+                smallest: least(table) * weakest,
+                materials: (table.len() as f64).sqrt().round() as usize,
+                scatters: !factors.is_empty(),
+            };
+            let limits = Limits {
+                materials: material,
+                table: table.clone(),
+                strengths: factors.clone(),
+            };
+            (critical, limits)
+        }
+    }
 }
 
 impl Body {
@@ -93,43 +201,22 @@ impl Body {
         } else {
             1.0
         };
+        let place_of = |i: usize| layout.place_of(i) as u32;
+        let place_of: Vec<u32> = (0..system.points()).map(place_of).collect();
+        let images = images(layout, &place_of);
+        let constants = Constants::new(data, (&place_of, &images), first, units);
         let bond = |k: usize| {
             let xi = stencil.vectors()[k].map(|component| component / units.length);
             let square: f64 = xi.iter().map(|component| component * component).sum();
-            let per_length = data.stiffness[k] / stencil.lengths()[k];
             Bond {
                 shift: stencil.shifts()[k],
                 xi,
                 square,
                 inverse_square: 1.0 / square,
-                stiffness: per_length / first * (units.time * units.time),
+                stiffness: constants.offsets[k],
             }
         };
-        let place_of = |i: usize| layout.place_of(i) as u32;
-        let place_of: Vec<u32> = (0..system.points()).map(place_of).collect();
-        let mut strengths = Vec::new();
-        let mut table = Vec::new();
-        let mut materials: &[u8] = &[];
-        let critical = match data.critical {
-            CriticalStretches::Uniform(stretch) => Critical::Uniform(stretch),
-            CriticalStretches::Pairs {
-                material,
-                table: stretches,
-                factors,
-            } => {
-                let least = |numbers: &[f64]| numbers.iter().copied().fold(f64::INFINITY, f64::min);
-                let used = factors.iter().copied().filter(|factor| *factor > 0.0);
-                let weakest = used.fold(f64::INFINITY, f64::min);
-                strengths = factors.to_vec();
-                table = stretches.to_vec();
-                materials = material;
-                Critical::Pairs {
-                    smallest: least(stretches) * if factors.is_empty() { 1.0 } else { weakest },
-                    materials: (stretches.len() as f64).sqrt().round() as usize,
-                    scatters: !factors.is_empty(),
-                }
-            }
-        };
+        let (critical, limits) = critical(&data.critical);
         let mut flags = vec![0; places];
         for &place in &place_of {
             flags[place as usize] = OWN;
@@ -137,7 +224,7 @@ impl Body {
         for (place, held) in held(lattice).into_iter().enumerate() {
             flags[place] |= if held { HELD } else { 0 };
         }
-        for (flags, material) in flags.iter_mut().zip(materials) {
+        for (flags, material) in flags.iter_mut().zip(limits.materials) {
             *flags |= u32::from(*material) << MATERIAL;
         }
         let densities = match density {
@@ -150,16 +237,10 @@ impl Body {
                 of_place
             }
         };
-        let mut factor_rows = Vec::new();
-        let mut factors = Vec::new();
-        if let Some(of_chunks) = data.factors {
-            factor_rows = vec![0; places / LANES];
-            for (chunk, &row) in layout.chunks().iter().zip(of_chunks.rows) {
-                factor_rows[chunk.place as usize] = row;
-            }
-            factors = of_chunks.values.to_vec();
-        }
+        let bonds: Vec<Bond> = (0..stencil.len()).map(bond).collect();
+        let numbers = |bond: &Bond| [bond.xi[0], bond.xi[1], bond.xi[2], bond.stiffness];
         Self {
+            offsets: bonds.iter().flat_map(numbers).collect(),
             dimension: system.dimension(),
             shape: [
                 strides[1],
@@ -169,21 +250,29 @@ impl Body {
             places,
             margin: stencil.farthest_shift().next_multiple_of(LANES),
             law: data.law,
-            bonds: (0..stencil.len()).map(bond).collect(),
+            bonds,
             critical,
-            has_factors: data.factors.is_some(),
+            constants,
             has_densities: !densities.is_empty(),
             directed_bonds: lattice_bonds(data.bonds),
-            images: images(layout, &place_of),
+            images,
             place_of,
             units,
             densities,
-            table,
-            strengths,
+            table: limits.table,
+            strengths: limits.strengths,
             flags,
-            factor_rows,
-            factors,
         }
+    }
+
+    /// Returns whether stiffnesses of bonds have factors.
+    pub(crate) fn has_factors(&self) -> bool {
+        !self.constants.factors.is_empty()
+    }
+
+    /// Returns whether the material is a linear peridynamic solid.
+    pub(crate) fn is_solid(&self) -> bool {
+        !self.constants.solid[0].is_empty()
     }
 
     /// Returns the distance of the components of a vector, in entries.
@@ -310,9 +399,12 @@ impl Body {
     /// The lists of the shaders: their constants, and their content.
     pub(crate) fn lists(&self, guided: &[u32]) -> Vec<(&'static str, Vec<u32>)> {
         let images = |k: usize| self.images.iter().map(|pair| pair[k]).collect();
+        // Added to a place without regard to overflow.
+        let shifts = self.bonds.iter().map(|bond| bond.shift as i32 as u32);
         vec![
             ("FLAGS", self.flags(guided)),
-            ("FACTOR_ROW", self.factor_rows.clone()),
+            ("FACTOR_ROW", self.constants.factor_rows.clone()),
+            ("SHIFTS", shifts.collect()),
             ("IMAGE_PLACE", images(0)),
             ("IMAGE_SOURCE", images(1)),
         ]
@@ -321,10 +413,15 @@ impl Body {
     /// The numbers of the shaders: their constants, and their content.
     pub(crate) fn numbers(&self) -> Vec<(&'static str, &[f64])> {
         vec![
-            ("STRETCH", &self.table[..]),
+            ("OFFSETS", &self.offsets[..]),
+            ("STRETCH", &self.table),
             ("STRENGTH", &self.strengths),
             ("DENSITY", &self.densities),
-            ("FACTORS", &self.factors),
+            ("FACTORS", &self.constants.factors),
+            ("DILATATION", &self.constants.solid[0]),
+            ("PRESSURE", &self.constants.solid[1]),
+            ("STIFFNESS", &self.constants.solid[2]),
+            ("BULK", &self.constants.solid[3]),
         ]
     }
 
@@ -338,6 +435,7 @@ impl Body {
             ("MATERIALS", materials),
             ("FACTOR_LENGTH", self.bonds.len() * LANES),
             ("IMAGES", self.images.len()),
+            ("BONDS", self.bonds.len()),
         ]
     }
 }

@@ -5,7 +5,7 @@
 //! at least every hundred steps, when it checks the run, stop conditions and signals. State and checkpoints are those of the
 //! processor: a run may stop on a device and resume without one, and the reverse.
 //!
-//! **Bodies.** Linear and bond-stretch bonds on a regular lattice in one, two or three dimensions, with holes, pre-cracks,
+//! **Bodies.** Linear and bond-stretch bonds and linear peridynamic solids on a regular lattice in one, two or three dimensions, with holes, pre-cracks,
 //! several materials, scattered strengths, surface correction, periodic faces and bonds that break; loads and prescribed motions
 //! that are functions of the position times functions of time; damping layers. [`unsupported`] lists the reasons why a run is not
 //! possible.

@@ -23,7 +23,7 @@ const LIMITS: &[Limit] = &[
         applies: |system, _| system.domain().is_divided(),
     },
     Limit {
-        reason: "the force is not that of linear or bond-stretch bonds on a regular lattice at constant temperature (state-based materials, softening, meshes, listed points and surfaces are computed by the processor)",
+        reason: "the force is not that of linear or bond-stretch bonds or of a linear peridynamic solid on a regular lattice at constant temperature (softening, viscous, plastic and correspondence materials, meshes, listed points and surfaces are computed by the processor)",
         applies: |system, _| system.operator().capabilities().stencil.is_none(),
     },
     Limit {

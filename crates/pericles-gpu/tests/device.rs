@@ -1,10 +1,13 @@
 //! Runs on a graphics processor compared with runs of the processor. They need a driver with Vulkan, Metal or Direct3D 12; `.ci/gpu`
 //! installs a software driver.
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use pericles::boundary::{DampedSteps, DampingLayer, DampingProfile, TimeTable};
+use pericles::family::EndRule;
+use pericles::material::{BondFailure, GivenConstants, LinearSolid, StateInfluence};
 use pericles::observe::Energies;
+use pericles::operator::{BondForm, LinearSolidBody};
 use pericles::prelude::*;
 use pericles::space::Face;
 use pericles::time::{Device, Integrator, State, VelocityVerlet};
@@ -240,6 +243,76 @@ fn damped_plate() -> System {
     body.build().unwrap()
 }
 
+/// A cracked plate and a block of two state-based materials.
+fn solid_plate() -> System {
+    let plate = Grid::plate([0.05, 0.03], SPACING, 1e-3).points().unwrap();
+    solid(
+        plate,
+        Some(Crack::Segment {
+            from: [0.0, 0.015],
+            to: [0.02, 0.015],
+        }),
+        24e6,
+    )
+}
+
+fn solid_block() -> System {
+    let block = Grid::block([0.015, 0.011, 0.009], SPACING)
+        .points()
+        .unwrap();
+    solid(block, None, 1e6)
+}
+
+/// A linear peridynamic solid under traction, whose bonds break if it has a crack.
+fn solid(cloud: PointCloud, crack: Option<Crack>, traction: f64) -> System {
+    let cloud = Arc::new(cloud);
+    let state = match cloud.dimension() {
+        2 => StressState::PlaneStrain,
+        _ => StressState::Spatial,
+    };
+    let material = LinearSolid {
+        density: 2440.0,
+        elastic: GivenConstants {
+            young: Some(72e9),
+            poisson_ratio: Some(0.3),
+            ..GivenConstants::default()
+        },
+        horizon: 3.015 * SPACING,
+        influence: StateInfluence::Isotropic,
+        volume_correction: VolumeCorrection::Extended,
+        failure: match crack {
+            Some(_) => BondFailure::CriticalStretch(4e-4),
+            None => BondFailure::Unbreakable,
+        },
+    };
+    let constants = material.constants(&cloud, state).unwrap();
+    let cracks: Vec<_> = crack
+        .into_iter()
+        .map(|crack| (crack, EndRule::default()))
+        .collect();
+    let body = LinearSolidBody {
+        cracks: &cracks,
+        ..LinearSolidBody::new(&cloud, &constants, VolumeCorrection::Extended)
+    };
+    let operator = body.operator(BondForm::Grid).unwrap().operator;
+    let mut system = System::new(cloud.clone(), operator, PointScalar::Uniform(2440.0)).unwrap();
+    for (face, size) in [("+y", traction), ("-y", -traction)] {
+        let function = TimeFunction::Ramp {
+            start: 0.0,
+            duration: 2e-6,
+        };
+        let load = Load::traction(
+            &cloud,
+            layer(&cloud, face),
+            [0.0, size, 0.0],
+            5e-5,
+            function,
+        );
+        system.add_load(load.unwrap()).unwrap();
+    }
+    system
+}
+
 fn rest(_: Point) -> Point {
     [0.0; 3]
 }
@@ -261,6 +334,18 @@ const BLOCK: Case = Case {
     dt: 1e-7,
     steps: 230,
     velocity: pulse,
+};
+const SOLID: Case = Case {
+    system: solid_block,
+    dt: 1e-7,
+    steps: 230,
+    velocity: pulse,
+};
+const CRACKED_SOLID: Case = Case {
+    system: solid_plate,
+    dt: 5e-8,
+    steps: 300,
+    velocity: rest,
 };
 const DAMPED: Case = Case {
     system: damped_plate,
@@ -298,8 +383,24 @@ fn cracks_equal_those_of_the_processor() {
 }
 
 #[test]
+fn solids_equal_those_of_the_processor() {
+    check_equal(
+        &SOLID.run(None),
+        &SOLID.run(Some(gpu(Precision::Double))),
+        1e-11,
+    );
+    let (cpu, device) = (
+        CRACKED_SOLID.run(None),
+        CRACKED_SOLID.run(Some(gpu(Precision::Double))),
+    );
+    assert!(broken(&cpu) > 30, "{}", broken(&cpu));
+    assert_eq!(broken(&cpu), broken(&device));
+    check_equal(&cpu, &device, 1e-9);
+}
+
+#[test]
 fn mixed_precision_is_accurate_to_single_precision_of_the_force() {
-    for case in [&BLOCK, &DAMPED] {
+    for case in [&BLOCK, &DAMPED, &SOLID] {
         // Accelerations are differences of larger forces; their error, 3e-5, set this bound.
         check_equal(
             &case.run(None),
@@ -423,6 +524,9 @@ fn the_shader_equals_plain_loops_of_the_processor() {
     let pericles::operator::CriticalStretches::Uniform(stretch) = data.critical else {
         panic!("one material");
     };
+    let pericles::operator::StencilMaterial::Bonds { stiffness, .. } = &data.material else {
+        panic!("bonds");
+    };
     let stencil = data.bonds.form().stencil();
     let lattice = system.cloud().lattice().unwrap().clone();
     let n = system.points();
@@ -478,7 +582,7 @@ fn the_shader_equals_plain_loops_of_the_processor() {
                     }
                     sum * t
                 };
-                let f = data.stiffness[k] / stencil.lengths()[k] / density * pull;
+                let f = stiffness[k] / stencil.lengths()[k] / density * pull;
                 for c in 0..3 {
                     force[c] += f * (xi[c] + eta[c]);
                 }

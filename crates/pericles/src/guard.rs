@@ -12,6 +12,7 @@
 //! | points about to pass through each other in contact | every [`OFTEN`] steps | bodies with contact |
 //! | a step above the stable step of a body that stiffened | every [`RARELY`] steps, and when energy appears | nonlinear bodies under explicit schemes with one step, unless the step was too long from the start |
 //!
+//! A processor that computes several steps at once is checked when the host reads the state, if a check was due in these steps.
 //! All checks run after the last step. The guard changes nothing, so that results do not depend on it. It costs
 //! less than a hundredth of a force evaluation per step, except where the step is above the bound: there it costs
 //! one evaluation of the energy per step.

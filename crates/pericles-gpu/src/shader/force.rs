@@ -1,4 +1,7 @@
-//! The shader of the forces of a stencil: forces of all nodes, and failure of bonds.
+//! The shaders of the forces of a stencil: forces of all nodes, and failure of bonds.
+//!
+//! The passes over bonds are written out; the energy that a point of a solid loses with its bonds is computed by a loop over the
+//! offsets, because few points need it.
 
 use std::fmt::Write as _;
 
@@ -18,7 +21,17 @@ const PHI: [f64; 7] = [
     -0.22572346562446355,
     0.20960254454644783,
 ];
-/// Largest |t| of the polynomial.
+/// Coefficients of ψ(t)/t = 1/(1 + √(1+t)), likewise.
+const PSI: [f64; 7] = [
+    0.5,
+    -0.12500000000009168,
+    0.06250000000007641,
+    -0.039062498166270054,
+    0.027343748471866127,
+    -0.020516980175525664,
+    0.0161209210780157,
+];
+/// Largest |t| of the polynomials.
 const REACH: f64 = 0.02;
 /// Bonds whose dissipated energy exceeds this multiple of their energy at the critical stretch, or is negative, need a shorter
 /// step: the processor corrects the motion of their ends.
@@ -26,12 +39,29 @@ const RESOLVED: f64 = 4.0;
 
 const AXES: [char; 3] = ['x', 'y', 'z'];
 
-/// Appends the shader `force`.
+const HEAD: &str = "    let place = place_of(id);
+    if (place == NOWHERE) {
+        return;
+    }
+    if ((lists[FLAGS + place] & OWN) == 0u || atomicLoad(&control[0]) < now.number) {
+        return;
+    }
+    let i = MARGIN + place;
+";
+
+/// Appends the shader `force`, and for solids the shader `dilate` of the pass over points.
 pub(super) fn write(text: &mut String, body: &Body, precision: Precision) {
     let writer = Writer { body, precision };
-    writer.pull(text);
+    writer.kinematics(text);
     if body.breaks() {
-        writer.lose(text);
+        writer.fails(text);
+        match body.is_solid() {
+            true => writer.lose_of_point(text),
+            false => writer.lose_bond(text),
+        }
+    }
+    if body.is_solid() {
+        writer.dilate(text);
     }
     writer.force(text);
 }
@@ -50,36 +80,70 @@ impl Writer<'_> {
         AXES[..self.body.dimension].iter().copied().enumerate()
     }
 
-    /// The pull of a bond with the strain t relative to its stiffness.
-    fn pull(&self, text: &mut String) {
-        let number = |value| self.number(value);
-        match self.body.law {
-            StencilLaw::Linear => text.push_str("fn pull(t: real) -> real {\n    return t;\n}\n"),
-            StencilLaw::BondStretch => {
-                let mut polynomial = number(PHI[6]);
-                for coefficient in PHI[..6].iter().rev() {
-                    polynomial = format!("({polynomial} * t + {})", number(*coefficient));
-                }
-                let (one, reach) = (number(1.0), number(REACH));
-                let _ = write!(
-                    text,
-                    "fn pull(t: real) -> real {{\n    if (abs(t) > {reach}) {{\n        return t / (({one} + t) + sqrt({one} + t));\n    }}\n    return {polynomial} * t;\n}}\n"
-                );
+    /// The sum over the axes of a text in which `@` stands for the axis.
+    fn sum(&self, term: &str) -> String {
+        let terms = self
+            .axes()
+            .map(|(_, axis)| term.replace('@', &axis.to_string()));
+        terms.collect::<Vec<_>>().join(" + ")
+    }
+
+    /// A text in which `@` stands for the axis, for each axis.
+    fn each(&self, text: &str) -> String {
+        let texts = self.axes().map(|(c, axis)| {
+            text.replace('@', &axis.to_string())
+                .replace('#', &c.to_string())
+        });
+        texts.collect()
+    }
+
+    fn is_linear(&self) -> bool {
+        self.body.law == StencilLaw::Linear
+    }
+
+    /// The functions `pull`, φ, and `stretch`, ψ, of the strain t of a bond.
+    fn kinematics(&self, text: &mut String) {
+        let mut function = |name: &str, coefficients: &[f64; 7], exact: &str| {
+            let number = |value| self.number(value);
+            if self.is_linear() {
+                let _ = writeln!(text, "fn {name}(t: real) -> real {{\n    return t;\n}}");
+                return;
             }
+            let mut polynomial = number(coefficients[6]);
+            for coefficient in coefficients[..6].iter().rev() {
+                polynomial = format!("({polynomial} * t + {})", number(*coefficient));
+            }
+            let exact = exact.replace('1', &number(1.0));
+            let _ = writeln!(
+                text,
+                "fn {name}(t: real) -> real {{\n    if (abs(t) > {}) {{\n        return t / {exact};\n    }}\n    return {polynomial} * t;\n}}",
+                number(REACH)
+            );
+        };
+        function("pull", &PHI, "((1 + t) + sqrt(1 + t))");
+        if self.body.is_solid() {
+            function("stretch_of", &PSI, "(1 + sqrt(1 + t))");
         }
     }
 
-    /// Decides whether a bond breaks at the end of the step, and records half of the energy that it dissipates.
-    fn lose(&self, text: &mut String) {
-        let vectors: String = self
-            .axes()
-            .map(|(_, axis)| format!(", x{axis}: real, {axis}: real"))
-            .collect();
+    /// The arguments that are vectors of a bond: ξ (`x@`) and η (`@`).
+    fn vectors(&self) -> String {
+        self.each(", x@: real, @: real")
+    }
+
+    /// The function `fails`: the critical stretch of a bond if it exceeds it, else a negative number.
+    fn fails(&self, text: &mut String) {
         let _ = write!(
             text,
-            "fn lose(place: u32, i: u32, other: u32, j: u32, square: real, stiffness: real{vectors}) -> bool {{\n"
+            "fn fails(place: u32, other: u32, square: real{}) -> real {{
+    let here = lists[FLAGS + place];
+    let there = lists[FLAGS + other];
+    if (((here | there) & HELD) != 0u) {{
+        return -ONE;
+    }}
+",
+            self.vectors()
         );
-        text.push_str("    let here = lists[FLAGS + place];\n    let there = lists[FLAGS + other];\n    if (((here | there) & HELD) != 0u) {\n        return false;\n    }\n");
         let stretch = match self.body.critical {
             Critical::Uniform(stretch) => self.number(stretch),
             Critical::Pairs { scatters, .. } => {
@@ -88,168 +152,365 @@ impl Writer<'_> {
                 match scatters {
                     false => table.to_owned(),
                     true => format!(
-                        "{table} * ({} * (numbers[STRENGTH + place] + numbers[STRENGTH + other]))",
-                        self.number(0.5)
+                        "{table} * (HALF * (numbers[STRENGTH + place] + numbers[STRENGTH + other]))"
                     ),
                 }
             }
         };
-        let dot = |a: &str, b: &str| {
-            let terms = self.axes().map(|(_, c)| {
-                format!(
-                    "{} * {}",
-                    a.replace('@', &c.to_string()),
-                    b.replace('@', &c.to_string())
-                )
-            });
-            terms.collect::<Vec<_>>().join(" + ")
-        };
-        let (half, two) = (self.number(0.5), self.number(2.0));
-        let _ = writeln!(text, "    let stretch = {stretch};");
-        let measure = match self.body.law {
-            StencilLaw::Linear => dot("x@", "@"),
-            StencilLaw::BondStretch => dot("@", "(x@ + x@ + @)"),
-        };
-        let _ = writeln!(text, "    let measure = {measure};");
-        let threshold = match self.body.law {
-            StencilLaw::Linear => "stretch".to_owned(),
-            StencilLaw::BondStretch => format!("(stretch * ({two} + stretch))"),
+        let (measure, threshold) = match self.is_linear() {
+            true => (self.sum("x@ * @"), "stretch".to_owned()),
+            false => (
+                self.sum("@ * (x@ + x@ + @)"),
+                format!("(stretch * ({} + stretch))", self.number(2.0)),
+            ),
         };
         let _ = writeln!(
             text,
-            "    if (!(measure > {threshold} * square)) {{\n        return false;\n    }}"
+            "    let stretch = {stretch};\n    if ({measure} > {threshold} * square) {{\n        return stretch;\n    }}\n    return -ONE;\n}}"
         );
-        for (c, axis) in self.axes() {
-            let at = |point: &str| format!("v[{c}u * PITCH + {point}]");
-            let _ = writeln!(
-                text,
-                "    let v{axis} = difference({}, {});",
-                at("j"),
-                at("i")
-            );
-        }
-        match self.body.law {
-            StencilLaw::Linear => {
-                let _ = writeln!(
-                    text,
-                    "    let energy = {half} * measure * measure / square;\n    let power = measure / square * ({});",
-                    dot("x@", "v@")
-                );
-            }
-            StencilLaw::BondStretch => {
-                let _ = writeln!(
-                    text,
-                    "    let reference = sqrt(square);\n    let deformed = sqrt(square + measure);\n    let elongation = measure / (deformed + reference);\n    let energy = {half} * elongation * elongation;\n    let power = elongation / deformed * ({});",
-                    dot("(x@ + @)", "v@")
-                );
-            }
-        }
-        let dt = "rounded(length_of(now.number))";
+    }
+
+    /// Declares the relative mean velocity `v@` of the ends i and j of a bond.
+    fn velocities(&self) -> String {
+        self.each("    let v@ = difference(v[#u * PITCH + j], v[#u * PITCH + i]);\n")
+    }
+
+    /// The function `lose`: whether a bond breaks at the end of the step; half of the energy that it dissipates is recorded.
+    fn lose_bond(&self, text: &mut String) {
+        let arguments = self.each(", x@, @");
+        let _ = write!(
+            text,
+            "fn lose(place: u32, i: u32, other: u32, j: u32, square: real, stiffness: real{}) -> bool {{
+    let stretch = fails(place, other, square{arguments});
+    if (stretch < ZERO) {{
+        return false;
+    }}
+{}",
+            self.vectors(),
+            self.velocities()
+        );
+        let energy = match self.is_linear() {
+            true => format!(
+                "    let measure = {};\n    let energy = HALF * measure * measure / square;\n    let power = measure / square * ({});\n",
+                self.sum("x@ * @"),
+                self.sum("x@ * v@")
+            ),
+            false => format!(
+                "    let measure = {};\n    let reference = sqrt(square);\n    let deformed = sqrt(square + measure);\n    let elongation = measure / (deformed + reference);\n    let energy = HALF * elongation * elongation;\n    let power = elongation / deformed * ({});\n",
+                self.sum("@ * (x@ + x@ + @)"),
+                self.sum("(x@ + @) * v@")
+            ),
+        };
+        text.push_str(&energy);
         let _ = writeln!(
             text,
-            "    let dissipated = energy - {half} * {dt} * power;\n    let critical = {half} * stretch * stretch * square;\n    if (dissipated < ZERO || dissipated > {} * critical) {{\n        atomicMin(&control[0], now.number);\n    }}\n    lost[place] += {half} * stiffness * dissipated;\n    return true;\n}}",
+            "    let dissipated = energy - HALF * rounded(length_of(now.number)) * power;
+    let critical = HALF * stretch * stretch * square;
+    if (dissipated < ZERO || dissipated > {} * critical) {{
+        atomicMin(&control[0], now.number);
+    }}
+    lost[place] += HALF * stiffness * dissipated;
+    return true;
+}}",
             self.number(RESOLVED)
         );
     }
 
-    fn force(&self, text: &mut String) {
+    /// The function `lose_of_point`: the energy that a point of a solid dissipates with the bonds that break at the end of the
+    /// step, by the rule of the loops of the processor (`Loss`): sums over all bonds and over the broken ones at the end of the step
+    /// (index 0) and at its start (index 1).
+    fn lose_of_point(&self, text: &mut String) {
+        let words = self.body.words();
+        let (stretch, contraction, along, before_along) = match self.is_linear() {
+            true => ("t", "ONE", self.sum("x@ * v@"), self.sum("x@ * v@")),
+            false => (
+                "t / (ONE + sqrt(ONE + t))",
+                "(ONE / sqrt(ONE + t))",
+                self.sum("(x@ + @) * v@"),
+                self.sum("(x@ + b@) * v@"),
+            ),
+        };
+        let measure = |eta: &str| match self.is_linear() {
+            true => self.sum("x@ * @").replace("* ", &format!("* {eta}")),
+            false => {
+                let term = format!("{eta}@ * (x@ + x@ + {eta}@)");
+                self.sum(&term)
+            }
+        };
+        let turned = self.sum("(x@ + @) * (x@ + b@)");
+        let vectors = self.each("        let x@ = numbers[OFFSETS + 4u * k + #u];\n        let @ = difference(u[#u * PITCH + j], u[#u * PITCH + i]);\n        let v@ = difference(v[#u * PITCH + j], v[#u * PITCH + i]);\n");
+        let before = self.each("        let b@ = @ - dt * v@;\n");
+        let at = |index: u32, eta: &str, along: &str| {
+            format!(
+                "        {{
+            let t = ({}) / square;
+            let psi = {stretch};
+            let rate = ({along}) * {contraction} / square;
+            whole[{index}] += weight * psi;
+            whole_rate[{index}] += weight * rate;
+            psis[{index}] = psi;
+            if (broken) {{
+                part[{index}] += weight * psi;
+                part_rate[{index}] += weight * rate;
+                squares[{index}] += weight * psi * psi;
+                square_rate[{index}] += weight * psi * rate;
+            }}
+        }}
+",
+                measure(eta)
+            )
+        };
+        let (end, start) = (at(0, "", &along), at(1, "b", &before_along));
+        let square = self.sum("x@ * x@");
+        let arguments = self.each(", x@, @");
+        let _ = write!(
+            text,
+            "fn lose_of_point(place: u32, i: u32, left: array<u32, {words}>, gone: array<u32, {words}>) {{
+    var intact = left;
+    var leaving = gone;
+    let dt = rounded(length_of(now.number));
+    var whole = array<real, 2>();
+    var whole_rate = array<real, 2>();
+    var part = array<real, 2>();
+    var part_rate = array<real, 2>();
+    var squares = array<real, 2>();
+    var square_rate = array<real, 2>();
+    var psis = array<real, 2>();
+    // Weights of the broken bonds, and their fractions of the step.
+    var share = ZERO;
+    var shares = ZERO;
+    var turned = false;
+    for (var k = 0u; k < BONDS; k++) {{
+        let bit = 1u << (k % 32u);
+        let broken = (leaving[k / 32u] & bit) != 0u;
+        if (!broken && (intact[k / 32u] & bit) == 0u) {{
+            continue;
+        }}
+        let j = i + lists[SHIFTS + k];
+{vectors}{before}        let square = {square};
+        let weight = numbers[OFFSETS + 4u * k + 3u] * square;
+{end}{start}        if (broken) {{
+            let critical = fails(place, place + lists[SHIFTS + k], square{arguments});
+            let crossing = clamp((critical - psis[1]) / (psis[0] - psis[1]), ZERO, ONE);
+            share += weight * psis[0] * psis[0];
+            shares += weight * psis[0] * psis[0] * crossing;
+            turned = turned || ({turned}) < ZERO;
+        }}
+    }}
+    var energy = array<real, 2>();
+    var power = array<real, 2>();
+    for (var k = 0u; k < 2u; k++) {{
+        let factor = numbers[DILATATION + place];
+        let theta = factor * whole[k];
+        let theta_rate = factor * whole_rate[k];
+        let loss = factor * part[k];
+        let loss_rate = factor * part_rate[k];
+        let rest = theta - loss;
+        let bulk = numbers[BULK + place];
+        let stiffness = numbers[STIFFNESS + place];
+        energy[k] = HALF * bulk * loss * (theta + rest) + HALF * stiffness * squares[k];
+        power[k] = bulk * (loss_rate * rest + theta_rate * loss) + stiffness * square_rate[k];
+    }}
+    let dissipated = energy[0] - HALF * dt * power[0];
+    var back = -HALF;
+    if (share > ZERO) {{
+        back = shares / share - ONE;
+    }}
+    let slope = dt * power[0];
+    let limit = energy[0] + back * (slope + back * (energy[1] - energy[0] + slope));
+    if (turned || limit < ZERO || dissipated < ZERO || dissipated > {} * limit) {{
+        atomicMin(&control[0], now.number);
+    }}
+    lost[place] += {}dissipated;
+}}
+",
+            self.number(RESOLVED),
+            self.density()
+        );
+    }
+
+    fn density(&self) -> &'static str {
+        match self.body.has_densities {
+            true => "numbers[DENSITY + place] * ",
+            false => "",
+        }
+    }
+
+    /// The start of a pass over bonds: name, and the displacement of the point.
+    fn begin(&self, text: &mut String, name: &str) {
+        let _ = write!(
+            text,
+            "@compute @workgroup_size(GROUP_X, GROUP_Y, GROUP_Z)\nfn {name}(@builtin(global_invocation_id) id: vec3<u32>) {{\n{HEAD}{}",
+            self.each("    let u@ = u[#u * PITCH + i];\n")
+        );
+    }
+
+    /// The pass over points of a solid: breaks bonds and computes p = (A/m) θ.
+    fn dilate(&self, text: &mut String) {
         let body = self.body;
-        text.push_str("@compute @workgroup_size(GROUP_X, GROUP_Y, GROUP_Z)\nfn force(@builtin(global_invocation_id) id: vec3<u32>) {\n    let place = place_of(id);\n    if (place == NOWHERE) {\n        return;\n    }\n    if ((lists[FLAGS + place] & OWN) == 0u || atomicLoad(&control[0]) < now.number) {\n        return;\n    }\n    let i = MARGIN + place;\n");
-        for (c, axis) in self.axes() {
-            let _ = writeln!(
-                text,
-                "    let u{axis} = u[{c}u * PITCH + i];\n    var f{axis} = ZERO;"
-            );
-        }
-        if body.has_factors {
-            text.push_str("    let row = lists[FACTOR_ROW + place / 8u];\n    let factors = FACTORS + row * FACTOR_LENGTH + place % 8u;\n");
-        }
+        self.begin(text, "dilate");
+        text.push_str("    var extension = ZERO;\n");
         let words = body.words();
-        for word in 0..words {
-            let name = format!("m{word}");
+        if body.breaks() {
             let _ = writeln!(
                 text,
-                "    var {name} = bits[{word}u * PLACES + place];\n    let old{word} = {name};"
+                "    var left = array<u32, {words}>();\n    var gone = array<u32, {words}>();\n    var any = 0u;"
             );
+        }
+        for word in 0..words {
+            let _ = writeln!(text, "    var m{word} = bits[{word}u * PLACES + place];");
+            if body.breaks() {
+                let _ = writeln!(text, "    left[{word}] = m{word};");
+            }
             let bonds = body.bonds.iter().enumerate();
             for (k, bond) in bonds.skip(32 * word).take(32) {
-                self.bond(text, &name, k, bond);
+                let bit = 1u32 << (k % 32);
+                self.ends(text, bond);
+                let _ = writeln!(text, "        var on = (m{word} & {bit}u) != 0u;");
+                if body.breaks() {
+                    let _ = writeln!(
+                        text,
+                        "        if (on && q > {}) {{\n            if (fails(place, {}, {}{}) >= ZERO) {{\n                m{word} &= {}u;\n                on = false;\n            }}\n        }}",
+                        self.number(body.smallest_threshold() * bond.square),
+                        beside("place", bond),
+                        self.number(bond.square),
+                        self.arguments(bond),
+                        !bit
+                    );
+                }
+                let _ = writeln!(
+                    text,
+                    "        extension += select(ZERO, {} * stretch_of(q * {}), on);\n    }}",
+                    self.number(bond.stiffness * bond.square),
+                    self.number(bond.inverse_square)
+                );
             }
             if body.breaks() {
                 let _ = writeln!(
                     text,
-                    "    if ({name} != old{word}) {{\n        bits[{word}u * PLACES + place] = {name};\n    }}"
+                    "    gone[{word}] = left[{word}] & ~m{word};\n    any |= gone[{word}];\n    if (gone[{word}] != 0u) {{\n        bits[{word}u * PLACES + place] = m{word};\n    }}"
                 );
             }
         }
-        let density = match body.has_densities {
-            true => "numbers[DENSITY + place] * ",
-            false => "",
-        };
-        for (c, axis) in self.axes() {
-            let _ = writeln!(text, "    a[{c}u * PITCH + i] = {density}f{axis};");
+        if body.breaks() {
+            text.push_str(
+                "    if (any != 0u) {\n        lose_of_point(place, i, left, gone);\n    }\n",
+            );
         }
+        text.push_str("    pressures[i] = numbers[PRESSURE + place] * (numbers[DILATATION + place] * extension);\n}\n");
+    }
+
+    /// The constant ξ and the variable η of a bond as arguments.
+    fn arguments(&self, bond: &Bond) -> String {
+        let vectors = self
+            .axes()
+            .map(|(c, axis)| format!(", {}, {axis}", self.number(bond.xi[c])));
+        vectors.collect()
+    }
+
+    /// Begins the block of a bond: its other end j, η and the measure q of its strain.
+    fn ends(&self, text: &mut String, bond: &Bond) {
+        let _ = writeln!(text, "    {{\n        let j = {};", beside("i", bond));
+        text.push_str(&self.each("        let @ = difference(u[#u * PITCH + j], u@);\n"));
+        let growth = self.axes().map(|(c, axis)| match self.is_linear() {
+            true => format!("{} * {axis}", self.number(bond.xi[c])),
+            false => format!("{axis} * ({} + {axis})", self.number(2.0 * bond.xi[c])),
+        });
+        let _ = writeln!(
+            text,
+            "        let q = {};",
+            growth.collect::<Vec<_>>().join(" + ")
+        );
+    }
+
+    /// The forces of all points; of bond-based materials also the failure of bonds.
+    fn force(&self, text: &mut String) {
+        let body = self.body;
+        self.begin(text, "force");
+        text.push_str(&self.each("    var f@ = ZERO;\n"));
+        if body.has_factors() {
+            text.push_str("    let row = lists[FACTOR_ROW + place / 8u];\n    let factors = FACTORS + row * FACTOR_LENGTH + place % 8u;\n");
+        }
+        if body.is_solid() {
+            text.push_str("    let pressure = pressures[i];\n    let stiffness = numbers[STIFFNESS + place];\n");
+        }
+        let breaks = body.breaks() && !body.is_solid();
+        for word in 0..body.words() {
+            let _ = writeln!(text, "    var m{word} = bits[{word}u * PLACES + place];");
+            if breaks {
+                let _ = writeln!(text, "    let old{word} = m{word};");
+            }
+            let bonds = body.bonds.iter().enumerate();
+            for (k, bond) in bonds.skip(32 * word).take(32) {
+                self.bond(text, word, k, bond);
+            }
+            if breaks {
+                let _ = writeln!(
+                    text,
+                    "    if (m{word} != old{word}) {{\n        bits[{word}u * PLACES + place] = m{word};\n    }}"
+                );
+            }
+        }
+        text.push_str(&self.each(&format!("    a[#u * PITCH + i] = {}f@;\n", self.density())));
         text.push_str("}\n");
     }
 
-    fn bond(&self, text: &mut String, word: &str, k: usize, bond: &Bond) {
+    fn bond(&self, text: &mut String, word: usize, k: usize, bond: &Bond) {
         let body = self.body;
         let bit = 1u32 << (k % 32);
-        let beside = |from: &str| match bond.shift {
-            shift if shift < 0 => format!("{from} - {}u", -shift),
-            shift => format!("{from} + {shift}u"),
-        };
-        let _ = writeln!(text, "    {{\n        let j = {};", beside("i"));
-        let xi = |c: usize| self.number(bond.xi[c]);
-        for (c, axis) in self.axes() {
-            let _ = writeln!(
-                text,
-                "        let {axis} = difference(u[{c}u * PITCH + j], u{axis});"
-            );
-        }
-        let growth = self.axes().map(|(c, axis)| match body.law {
-            StencilLaw::Linear => format!("{} * {axis}", xi(c)),
-            StencilLaw::BondStretch => {
-                format!("{axis} * ({} + {axis})", self.number(2.0 * bond.xi[c]))
-            }
-        });
-        let growth: Vec<String> = growth.collect();
-        let _ = writeln!(text, "        let q = {};", growth.join(" + "));
+        self.ends(text, bond);
         let mut stiffness = self.number(bond.stiffness);
-        if body.has_factors {
+        if body.has_factors() {
             stiffness = format!("{stiffness} * numbers[factors + {}u]", 8 * k);
         }
-        let _ = writeln!(text, "        var on = ({word} & {bit}u) != 0u;");
-        if body.breaks() {
-            let vectors: String = self
-                .axes()
-                .map(|(c, axis)| format!(", {}, {axis}", xi(c)))
-                .collect();
-            let watched = self.number(body.smallest_threshold() * bond.square);
-            let density = match body.has_densities {
-                true => "numbers[DENSITY + place] * ",
-                false => "",
-            };
+        let _ = writeln!(text, "        var on = (m{word} & {bit}u) != 0u;");
+        let t = format!("q * {}", self.number(bond.inverse_square));
+        let pull = match body.is_solid() {
+            false => format!("pull({t})"),
+            true => {
+                let other = beside("place", bond);
+                let _ = writeln!(
+                    text,
+                    "        let p = pressure + pressures[j];\n        let s = stiffness + numbers[STIFFNESS + {other}];"
+                );
+                match self.is_linear() {
+                    true => format!("(p + {t} * s)"),
+                    false => format!("(p + pull({t}) * (s - p))"),
+                }
+            }
+        };
+        if body.breaks() && !body.is_solid() {
             let _ = writeln!(
                 text,
-                "        if (on && q > {watched}) {{\n            if (lose(place, i, {}, j, {}, {density}{stiffness}{vectors})) {{\n                {word} &= {}u;\n                on = false;\n            }}\n        }}",
-                beside("place"),
+                "        if (on && q > {}) {{\n            if (lose(place, i, {}, j, {}, {}{stiffness}{})) {{\n                m{word} &= {}u;\n                on = false;\n            }}\n        }}",
+                self.number(body.smallest_threshold() * bond.square),
+                beside("place", bond),
                 self.number(bond.square),
+                self.density(),
+                self.arguments(bond),
                 !bit
             );
         }
         let _ = writeln!(
             text,
-            "        let f = select(ZERO, {stiffness} * pull(q * {}), on);",
-            self.number(bond.inverse_square)
+            "        let f = select(ZERO, {stiffness} * {pull}, on);"
         );
         for (c, axis) in self.axes() {
-            let along = match body.law {
-                StencilLaw::Linear => xi(c),
-                StencilLaw::BondStretch => format!("({} + {axis})", xi(c)),
+            let xi = self.number(bond.xi[c]);
+            let along = match self.is_linear() {
+                true => xi,
+                false => format!("({xi} + {axis})"),
             };
             let _ = writeln!(text, "        f{axis} += f * {along};");
         }
         text.push_str("    }\n");
+    }
+}
+
+/// The place of the neighbour of a bond.
+fn beside(from: &str, bond: &Bond) -> String {
+    match bond.shift {
+        shift if shift < 0 => format!("{from} - {}u", -shift),
+        shift => format!("{from} + {shift}u"),
     }
 }

@@ -54,7 +54,7 @@ pub(crate) fn text(body: &Body, entries: &Entries, precision: Precision) -> Stri
     for (name, value) in constants(body, entries) {
         let _ = writeln!(text, "const {name} = {value}u;");
     }
-    for (name, value) in [("ZERO", 0.0), ("HALF", 0.5)] {
+    for (name, value) in [("ZERO", 0.0), ("HALF", 0.5), ("ONE", 1.0)] {
         let _ = writeln!(text, "const {name} = {};", precision.literal(value));
     }
     text.push_str(STEPS);

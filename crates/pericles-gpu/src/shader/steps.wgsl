@@ -24,11 +24,13 @@ struct Now {
 @group(0) @binding(6) var<storage, read_write> control: array<atomic<u32>>;
 // Work, impulses, reactions and pulls of loads, constraints and layers.
 @group(0) @binding(7) var<storage, read_write> books: array<real>;
-@group(0) @binding(8) var<storage, read> lists: array<u32>;
-@group(0) @binding(9) var<storage, read> numbers: array<real>;
-@group(0) @binding(10) var<storage, read> amplitudes: array<state>;
+// p = A theta/m of the points of a solid.
+@group(0) @binding(8) var<storage, read_write> pressures: array<real>;
+@group(0) @binding(9) var<storage, read> lists: array<u32>;
+@group(0) @binding(10) var<storage, read> numbers: array<real>;
+@group(0) @binding(11) var<storage, read> amplitudes: array<state>;
 // Time functions, one row per step.
-@group(0) @binding(11) var<storage, read> course: array<state>;
+@group(0) @binding(12) var<storage, read> course: array<state>;
 
 const NOWHERE = 0xffffffffu;
 
@@ -211,4 +213,14 @@ fn repeat(@builtin(global_invocation_id) id: vec3<u32>) {
         u[c * PITCH + MARGIN + place] = u[c * PITCH + MARGIN + source];
         v[c * PITCH + MARGIN + place] = v[c * PITCH + MARGIN + source];
     }
+}
+
+// Copies the pressures of points to their images beyond periodic faces.
+@compute @workgroup_size(LIST_GROUP)
+fn repeat_pressures(@builtin(global_invocation_id) id: vec3<u32>) {
+    let item = item_of(id);
+    if (item >= IMAGES) {
+        return;
+    }
+    pressures[MARGIN + lists[IMAGE_PLACE + item]] = pressures[MARGIN + lists[IMAGE_SOURCE + item]];
 }

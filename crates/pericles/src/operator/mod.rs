@@ -73,7 +73,8 @@ pub use state_based::{
     FiniteStrain, Kinematics, LinearSolidBody, LinearSolidForce, LinearSolidGrid, SmallStrain,
 };
 pub use stencil_force::{
-    CriticalStretches, StencilData, StencilForce, StencilLaw, StiffnessFactors,
+    CriticalStretches, StencilData, StencilForce, StencilLaw, StencilMaterial, StencilSolid,
+    StiffnessFactors,
 };
 pub use two_pass::{AtPoints, Neighbours, TwoPass, TwoPassForce, with_neighbours};
 pub use view::{BondAt, BondValues, BondView, DilatationView, PlasticView, StressView};

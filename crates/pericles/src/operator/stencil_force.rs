@@ -2,28 +2,28 @@
 
 use crate::neighbourhood::{Lattice, Neighbourhood};
 
-/// The pair force of a stencil.
+/// The kinematics of the bonds of a stencil: stretch and direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StencilLaw {
-    /// [`LinearBond`](crate::material::LinearBond).
+    /// [`LinearBond`](crate::material::LinearBond), small displacements.
     Linear,
-    /// [`BondStretch`](crate::material::BondStretch).
+    /// [`BondStretch`](crate::material::BondStretch), finite displacements.
     BondStretch,
 }
 
 /// Critical stretches of the bonds of a stencil.
-#[derive(Debug, Clone, Copy)]
-pub enum CriticalStretches<'a> {
+#[derive(Debug, Clone)]
+pub enum CriticalStretches {
     /// The same of all bonds; infinite if bonds never break.
     Uniform(f64),
     /// By the materials of the places of both ends.
     Pairs {
         /// Material of each place.
-        material: &'a [u8],
+        material: Vec<u8>,
         /// Critical stretch of each pair of materials, row by row.
-        table: &'a [f64],
+        table: Vec<f64>,
         /// Factor of each place; a bond has the mean factor of its ends. Empty if strengths do not scatter.
-        factors: &'a [f64],
+        factors: Vec<f64>,
     },
 }
 
@@ -36,18 +36,45 @@ pub struct StiffnessFactors<'a> {
     pub values: &'a [f64],
 }
 
-/// A force Σ_j c α κ V_j s n of the bonds of a lattice as data; see [`GridForce`](super::GridForce).
+/// What acts in the bonds of a stencil.
+#[derive(Debug, Clone)]
+pub enum StencilMaterial<'a> {
+    /// Σ_j c α κ V_j s n; see [`GridForce`](super::GridForce).
+    Bonds {
+        /// c α κ V of the offsets of the stencil, N/m³.
+        stiffness: Vec<f64>,
+        /// Factors of this stiffness; `None` if all bonds have it.
+        factors: Option<StiffnessFactors<'a>>,
+    },
+    /// A linear peridynamic solid; see [`LinearSolidGrid`](super::LinearSolidGrid).
+    Solid(StencilSolid<'a>),
+}
+
+/// Constants of a linear peridynamic solid on a stencil: of offsets, and of own points.
+#[derive(Debug, Clone)]
+pub struct StencilSolid<'a> {
+    /// ω = w V of the offsets, m³.
+    pub weights: Vec<f64>,
+    /// D/m: the dilatation is (D/m) Σ ω r e.
+    pub dilatation: &'a [f64],
+    /// A/m: the pressure p is (A/m) θ.
+    pub pressure: &'a [f64],
+    /// B/m.
+    pub stiffness: &'a [f64],
+    /// A/D, Pa.
+    pub bulk: &'a [f64],
+}
+
+/// A force of the bonds of a lattice as data.
 pub struct StencilData<'a> {
-    /// The pair force.
+    /// The kinematics of bonds.
     pub law: StencilLaw,
     /// The bonds.
     pub bonds: &'a Neighbourhood<Lattice>,
-    /// c α κ V of the offsets of the stencil, N/m³.
-    pub stiffness: Vec<f64>,
-    /// Factors of this stiffness; `None` if all bonds have it.
-    pub factors: Option<StiffnessFactors<'a>>,
+    /// The material.
+    pub material: StencilMaterial<'a>,
     /// Critical stretches.
-    pub critical: CriticalStretches<'a>,
+    pub critical: CriticalStretches,
 }
 
 /// A force that consists of the bonds of a stencil.

@@ -36,11 +36,11 @@ impl PairThresholds {
     }
 
     /// Returns the critical stretches as data.
-    pub fn data(&self) -> CriticalStretches<'_> {
+    pub fn data(&self) -> CriticalStretches {
         CriticalStretches::Pairs {
-            material: self.classes.of_point(),
-            table: self.classes.critical_stretches(),
-            factors: self.classes.strengths(),
+            material: self.classes.of_point().to_vec(),
+            table: self.classes.critical_stretches().to_vec(),
+            factors: self.classes.strengths().to_vec(),
         }
     }
 

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::pool::{Lent, Pool};
 use super::{
     BondView, Breakable, Capabilities, DilatationView, Force, InstructionSet, LinearOperator,
-    Linearity, LocalForce, PointSubset,
+    Linearity, LocalForce, PointSubset, StencilForce,
 };
 use crate::archive::{Archive, Checkpointed};
 use crate::domain::{Domain, Field};
@@ -100,6 +100,16 @@ pub trait TwoPass: Checkpointed + Send + Sync {
 
     /// Returns the thermal expansion of the material, if any.
     fn thermal(&self) -> Option<&ThermalExpansion> {
+        None
+    }
+
+    /// Returns the force as data, if it consists of the bonds of a stencil at constant temperature.
+    fn stencil(&self) -> Option<&dyn StencilForce> {
+        None
+    }
+
+    /// Returns [`TwoPass::stencil`] for modification.
+    fn stencil_mut(&mut self) -> Option<&mut dyn StencilForce> {
         None
     }
 
@@ -285,12 +295,17 @@ impl<F: TwoPass> Force for TwoPassForce<F> {
             bonds: self.force.bonds(),
             dilatation: self.force.dilatation().map(|_| self as &dyn DilatationView),
             thermal: self.force.thermal(),
+            stencil: self.force.stencil(),
             ..Capabilities::default()
         }
     }
 
     fn breaking_mut(&mut self) -> Option<&mut dyn Breakable> {
         self.force.breaking_mut()
+    }
+
+    fn stencil_mut(&mut self) -> Option<&mut dyn StencilForce> {
+        self.force.stencil_mut()
     }
 
     fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {

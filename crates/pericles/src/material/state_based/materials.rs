@@ -167,6 +167,16 @@ impl<C> Materials<C> {
         self.limits[pair].scaled(self.strength.of_bond(i, j))
     }
 
+    /// Returns the critical stretches by pair of materials.
+    pub(crate) fn critical_stretches(&self) -> Vec<f64> {
+        self.limits.iter().map(|limits| limits.stretch).collect()
+    }
+
+    /// Returns the factor of the critical stretch of every point or site; empty if strengths do not scatter.
+    pub(crate) fn strengths(&self) -> &[f64] {
+        self.strength.as_slice()
+    }
+
     /// Returns the lowest limits of all bonds.
     pub fn weakest(&self) -> BondLimits {
         let limits = self.limits.iter();

@@ -14,7 +14,7 @@ use crate::operator::fast_law::VectorLaw;
 use crate::operator::{
     Breakable, Capabilities, CriticalStretches, Force, InstructionSet, LatticeSpring,
     LatticeSprings, LinearOperator, Linearity, PointSubset, SplitForce, StencilData, StencilForce,
-    StencilLaw,
+    StencilLaw, StencilMaterial,
 };
 use crate::step_end::StepEnd;
 use crate::thermal::Expandable;
@@ -216,8 +216,10 @@ impl<L: VectorLaw, const D: usize> StencilForce for GridForce<L, D> {
         StencilData {
             law: L::STENCIL.unwrap_or(StencilLaw::BondStretch),
             bonds: &self.bonds,
-            stiffness: offsets.map(|offset| offset.stiffness).collect(),
-            factors: self.doubles.factors().map(Factors::data),
+            material: StencilMaterial::Bonds {
+                stiffness: offsets.map(|offset| offset.stiffness).collect(),
+                factors: self.doubles.factors().map(Factors::data),
+            },
             critical: match &self.pairs {
                 None => CriticalStretches::Uniform(self.critical_stretch),
                 Some(pairs) => pairs.data(),

@@ -66,7 +66,7 @@ impl PlaceThresholds {
     }
 
     /// Returns the critical stretches as data.
-    pub fn data(&self) -> CriticalStretches<'_> {
+    pub fn data(&self) -> CriticalStretches {
         self.pairs.data()
     }
 

@@ -2,6 +2,7 @@
 
 use crate::lanes::{Vector, dot};
 use crate::material::{BondStretch, LinearBond, PairForce};
+use crate::operator::StencilLaw;
 use crate::operator::fast_law::PHI;
 
 /// The kinematics of a bond of length r = |ξ| in the loops of state-based materials, as a function of a
@@ -18,6 +19,8 @@ use crate::operator::fast_law::PHI;
 pub trait Kinematics: Copy + Default + Send + Sync + 'static {
     /// Pair force with the stretch measure of the failure criterion.
     type Measure: PairForce;
+    /// The kinematics in the data of stencils.
+    const STENCIL: StencilLaw;
     /// Whether stretches are linear in the displacement and directions fixed.
     const LINEAR: bool;
     /// Largest |t| for which [`Kinematics::stretch`] and [`Kinematics::pull`] are exact to round-off.
@@ -92,6 +95,7 @@ fn growth<T: Vector, const D: usize>(xi: [T; D], eta: [T; D]) -> T {
 
 impl Kinematics for FiniteStrain {
     type Measure = BondStretch;
+    const STENCIL: StencilLaw = StencilLaw::BondStretch;
     const LINEAR: bool = false;
     const REACH: f64 = 0.02;
 
@@ -148,6 +152,7 @@ impl Kinematics for FiniteStrain {
 
 impl Kinematics for SmallStrain {
     type Measure = LinearBond;
+    const STENCIL: StencilLaw = StencilLaw::Linear;
     const LINEAR: bool = true;
     const REACH: f64 = f64::INFINITY;
 

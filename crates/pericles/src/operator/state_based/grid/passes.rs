@@ -8,11 +8,12 @@ use super::tangent::{dilatation_change_chunks, tangent_chunks};
 use crate::domain::Field;
 use crate::lanes::LANES;
 use crate::material::PairForce;
-use crate::neighbourhood::{BondSet, Form};
+use crate::neighbourhood::{BondSet, Form, Lattice, Neighbourhood};
 use crate::operator::state_based::breaking::heated_limit;
 use crate::operator::state_based::kinematics::Kinematics;
 use crate::operator::{
-    AtPoints, BondView, Breakable, CoarseBreak, InstructionSet, PointSubset, TwoPass,
+    AtPoints, BondView, Breakable, CoarseBreak, CriticalStretches, InstructionSet, PointSubset,
+    StencilData, StencilForce, StencilMaterial, StencilSolid, TwoPass,
 };
 use crate::parallel::for_each_chunk;
 use crate::step_end::StepEnd;
@@ -170,6 +171,14 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         Some(0)
     }
 
+    fn stencil(&self) -> Option<&dyn StencilForce> {
+        self.heat.is_none().then_some(self)
+    }
+
+    fn stencil_mut(&mut self) -> Option<&mut dyn StencilForce> {
+        self.heat.is_none().then_some(self)
+    }
+
     /// Not available for bodies divided among processes: the force of a bond needs the families of both ends.
     fn bonds(&self) -> Option<&dyn BondView> {
         Some(self)
@@ -191,6 +200,46 @@ impl<L: Kinematics, const D: usize> TwoPass for LinearSolidGrid<L, D> {
         if InstructionSet::available().contains(&set) {
             self.instruction_set = set;
         }
+    }
+}
+
+impl<L: Kinematics, const D: usize> LinearSolidGrid<L, D> {
+    fn critical_stretches(&self) -> CriticalStretches {
+        let (classes, layout) = (&self.classes, self.layout());
+        match (&classes.critical_stretches()[..], classes.strengths()) {
+            (&[stretch], []) => CriticalStretches::Uniform(stretch),
+            (table, strengths) => CriticalStretches::Pairs {
+                material: layout.at_places(|site| classes.number(site) as u8),
+                table: table.to_vec(),
+                factors: match strengths {
+                    [] => Vec::new(),
+                    strengths => layout.at_places(|site| strengths[site]),
+                },
+            },
+        }
+    }
+}
+
+impl<L: Kinematics, const D: usize> StencilForce for LinearSolidGrid<L, D> {
+    fn data(&self) -> StencilData<'_> {
+        let offsets = self.offsets.iter();
+        let solid = StencilSolid {
+            weights: offsets.map(|offset| offset.weight).collect(),
+            dilatation: &self.states.dilatation,
+            pressure: &self.states.pressure[..self.cloud.len()],
+            stiffness: &self.states.stiffness[..self.cloud.len()],
+            bulk: &self.states.bulk,
+        };
+        StencilData {
+            law: L::STENCIL,
+            bonds: &self.bonds,
+            material: StencilMaterial::Solid(solid),
+            critical: self.critical_stretches(),
+        }
+    }
+
+    fn bonds_mut(&mut self) -> &mut Neighbourhood<Lattice> {
+        &mut self.bonds
     }
 }
 
