@@ -111,7 +111,7 @@ pub use deck_text::DeckText;
 pub use error::RunError;
 pub use event::{Event, Tell};
 pub use export::{ExportFormat, Exported, Selection, export};
-pub use facts::{EndFacts, Facts, LoadFacts, PlaneFacts, PropertyFacts, StartFacts};
+pub use facts::{Fact, Facts, Line, Section};
 pub use heat::{HeatBalance, HeatFacts, Inflow};
 pub use inputs::Inputs;
 pub use json::write_json;
