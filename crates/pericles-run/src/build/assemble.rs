@@ -76,7 +76,6 @@ pub fn assemble(
         density,
         softening,
     } = parts;
-    assembler.reject_fields(&bonds)?;
     assembler.check_cells(&discretisation)?;
     assembler.check_point_numbers(sets)?;
     warnings.extend(assembler.check_names(sets));
@@ -88,6 +87,7 @@ pub fn assemble(
         let added = system.add_field(Box::new(field));
         added.map_err(|error| at("thermal", error))?;
     }
+    assembler.reject_fields(&system)?;
     let precut_bonds = bonds.cuts.iter().map(|cut| cut.bonds).sum();
     let state = assembler.first_state((&mut system, precut_bonds), cloud, resources);
     let mut state = discretisation.agreed(state)?;
