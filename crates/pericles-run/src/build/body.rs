@@ -40,18 +40,13 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         let place = discretisation;
         match &solid.material.model {
-            MaterialModel::Bonds(material) => {
-                self.bond_based_parts(solid, material, place, warnings)
-            }
-            MaterialModel::StateBased(material) => {
-                self.state_based_parts(solid, material, place, warnings)
-            }
+            MaterialModel::Bonds(material) => self.bond_based_parts(solid, material, place),
+            MaterialModel::StateBased(material) => self.state_based_parts(solid, material, place),
             MaterialModel::Correspondence(material) => {
-                self.correspondence_parts(solid, material, place, warnings)
+                self.correspondence_parts(solid, material, place)
             }
         }
     }
@@ -61,7 +56,6 @@ impl Assembler<'_> {
         solid: &Solid,
         material: &BondMaterial,
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         let Discretisation {
             cloud, grids, sets, ..
@@ -70,9 +64,10 @@ impl Assembler<'_> {
             .constants_of(solid, material, cloud)
             .map_err(at_material)?;
         let known = MaterialConstants::Bonds(constants.clone());
-        warnings.extend(self.check_speed(solid, &known));
-        warnings.extend(self.check_classes(material, &constants));
-        warnings.extend(self.check_solid(solid, &known));
+        self.warnings.extend(self.check_speed(solid, &known));
+        self.warnings
+            .extend(self.check_classes(material, &constants));
+        self.warnings.extend(self.check_solid(solid, &known));
         let no_fail = self.unbreakable(solid, sets, cloud)?;
         let stiffness = self.stiffness_of(cloud, sets)?;
         let Composition {
@@ -82,7 +77,7 @@ impl Assembler<'_> {
             density,
             others,
             softening,
-        } = self.materials(solid, (material, &constants), discretisation, warnings)?;
+        } = self.materials(solid, (material, &constants), discretisation)?;
         let body = BondBody {
             cloud,
             material,
@@ -101,8 +96,7 @@ impl Assembler<'_> {
             strengths: &strengths,
         };
         let all = (&materials[..], &interfaces[..]);
-        let (bonds, cracks) =
-            self.bonds(solid, composite, (grids, all), discretisation, warnings)?;
+        let (bonds, cracks) = self.bonds(solid, composite, (grids, all), discretisation)?;
         let rejected = bonds.form.rejection(Feature::Tensors.into());
         if let Some(reason) = rejected {
             self.reject_needing(FieldNeed::Bonds, reason)?;
@@ -124,16 +118,16 @@ impl Assembler<'_> {
         surface: &Surface,
         discretisation: &Discretisation,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
         self.reject_body_forces()?;
         let operator = self.surface_operator(body, surface, cloud, sets, resources.cache)?;
         let neighbours = operator.directed_bonds() as f64 / cloud.len() as f64;
         for caution in surface.cautions(body.material.horizon, neighbours) {
-            warnings.push(Remark::new("material.horizon", Caution::Surface(caution)));
+            self.warn("material.horizon", Caution::Surface(caution));
         }
-        warnings.extend(mesh_dependence(&body.material.power(), surface));
+        self.warnings
+            .extend(mesh_dependence(&body.material.power(), surface));
         Ok(BodyParts {
             bonds: AssembledForce {
                 operator,
@@ -285,7 +279,6 @@ impl Assembler<'_> {
         composite: CompositeBody<'_>,
         (grids, (materials, interfaces)): (&Grids, (&[BondMaterial], &[Between])),
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<(AssembledForce, Vec<TrackedCrack>), BuildError> {
         let surfaces = self.cracks;
         let composite = CompositeBody {
@@ -308,7 +301,7 @@ impl Assembler<'_> {
         } else {
             pericles_waves::assemble(&composite, form).map_err(at_material)?
         };
-        let tracked = self.tracked_cracks(&assembled.cuts, discretisation, warnings);
+        let tracked = self.tracked_cracks(&assembled.cuts, discretisation);
         Ok((assembled, tracked))
     }
 }

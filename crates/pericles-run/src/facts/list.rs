@@ -1,4 +1,4 @@
-//! The list of facts, as lines for people and as an object of JSON.
+//! The list of facts: lines of `check`, and an object of JSON.
 
 use pericles::units::unit_per;
 use serde::ser::{Serialize, SerializeMap, Serializer};
