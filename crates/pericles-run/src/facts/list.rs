@@ -40,13 +40,6 @@ pub struct Fact {
     pub is_recorded: bool,
 }
 
-impl Fact {
-    /// Returns the name that people read.
-    pub fn label(&self) -> String {
-        self.key.replace('_', " ")
-    }
-}
-
 /// Facts that are printed in one line.
 #[derive(Debug, Clone)]
 pub struct Line {
@@ -219,14 +212,17 @@ impl Facts {
         unit_per(whole, self.value("units_per").and_then(Value::as_str))
     }
 
-    /// Returns all facts and warnings as an object of JSON.
+    /// Returns all facts as an object of JSON, with their units and the warnings.
     pub fn to_json(&self) -> Map<String, Value> {
-        let pairs = self
+        let values = self
             .iter()
             .map(|fact| (fact.key.into(), fact.value.clone()));
-        pairs
-            .chain([("warnings".into(), Value::from(self.warnings.clone()))])
-            .collect()
+        let mut json: Map<String, Value> = values.collect();
+        let with_unit = self.iter().filter(|fact| !fact.unit.is_empty());
+        let units = with_unit.map(|fact| (fact.key.into(), fact.unit.as_str().into()));
+        json.insert("units".into(), Value::Object(units.collect()));
+        json.insert("warnings".into(), self.warnings.clone().into());
+        json
     }
 }
 

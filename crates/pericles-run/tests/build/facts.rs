@@ -65,6 +65,7 @@ fn run_json_has_the_recorded_facts_and_check_has_all() {
         assert_eq!(check[key], *value, "{key}");
     }
     assert!(check.contains_key("neighbours") && !run.contains_key("neighbours"));
+    assert_eq!(check["units"]["end"], "s");
     assert_eq!(run["pieces"], 2);
     assert_eq!(run["loads"][0]["points"], 48 + 30);
     let printed = detailed.printed();
