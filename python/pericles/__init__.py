@@ -22,6 +22,7 @@ from __future__ import annotations
 import os as _os
 
 from . import _pericles
+from ._check import Check, Report
 from ._deck import Deck
 from ._errors import (
     DeckError,
@@ -34,11 +35,9 @@ from ._errors import (
 )
 from ._fit import Fit, FittedValue, fit
 from ._functions import (
-    Check,
     Difference,
     Dispersion,
     Modes,
-    Report,
     Reproduction,
     check,
     diff,

@@ -5,19 +5,19 @@ from __future__ import annotations
 import copy
 import json
 import os
-import warnings
 from collections.abc import Iterator, Mapping, MutableMapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _pericles, _toml
-from ._errors import DeckError, OutputError, PericlesError, PericlesWarning, Problem
+from ._check import Check, checked
+from ._errors import DeckError, OutputError, PericlesError
+from ._model import Model
+from ._problems import located
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-    from ._functions import Check
-    from ._model import Model
     from ._types import DeckLike
 
 
@@ -25,16 +25,8 @@ def _overrides(changes: Mapping[str, Any] | None) -> list[str]:
     """Return changes as the program takes them, ``key=value``."""
     out = []
     for key, value in (changes or {}).items():
-        value = _toml.plain(value, key)
-        text = value if isinstance(value, str) else _toml._value(value)
-        out.append(f"{key}={text}")
+        out.append(f"{key}={_toml.text(value, key)}")
     return out
-
-
-def warn(messages: list[str], depth: int = 3) -> None:
-    """Issue warnings at the caller of the package."""
-    for message in messages:
-        warnings.warn(message, PericlesWarning, stacklevel=depth)
 
 
 class Deck(MutableMapping[str, Any]):
@@ -198,9 +190,7 @@ class Deck(MutableMapping[str, Any]):
         DeckError
             The deck is invalid.
         """
-        from ._functions import check
-
-        return check(self)
+        return checked(self)
 
     def build(
         self,
@@ -229,8 +219,6 @@ class Deck(MutableMapping[str, Any]):
         -------
         Model
         """
-        from ._model import Model
-
         return Model(self, points=points, volumes=volumes, blocks=blocks, sets=sets)
 
     def __deepcopy__(self, memo: Any) -> Deck:
@@ -291,29 +279,6 @@ def parsed(text: str, name: str, overrides: list[str], sets: list[str]) -> _peri
     except DeckError as error:
         located(error, text, name)
         raise
-
-
-def located(error: DeckError, text: str, name: str) -> None:
-    """Add its key to every problem, and to the message if nobody has seen the text, as for a dict."""
-    problems = []
-    for problem in error.problems:
-        is_known = problem.path is not None
-        path = problem.path or (_toml.path_at(text, problem.line) if problem.file == name else _of_override(problem))
-        problem = problem._replace(path=path)
-        if not is_known and name.startswith("<dict") and problem.file == name and path and not problem.message.startswith(path):
-            place = f"{name}:{problem.line}:{problem.column}: "
-            problem = problem._replace(text=problem.text.replace(place, f"{place}{path}: ", 1))
-        problems.append(problem)
-    message = str(error)
-    for old, new in zip(error.problems, problems):
-        message = message.replace(old.text, new.text, 1)
-    error.args = (message,)
-    error.problems = problems
-
-
-def _of_override(problem: Problem) -> str | None:
-    prefix = "--set "
-    return problem.file[len(prefix) :] if problem.file and problem.file.startswith(prefix) else None
 
 
 def as_deck(given: DeckLike, changes: Mapping[str, Any] | None = None) -> Deck:

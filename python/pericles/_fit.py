@@ -8,10 +8,12 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from . import _pericles
-from ._deck import Deck, _overrides, as_deck, warn
+from . import _pericles, _toml
+from ._deck import Deck, _overrides, as_deck
 from ._errors import PericlesError
+from ._problems import warn
 from ._result import Result, Table
+from ._sweep import _bar
 
 if TYPE_CHECKING:
     import numpy as np
@@ -200,8 +202,6 @@ def fit(
     for name, value in (("step", step), ("tolerance", tolerance)):
         if not 0 < value < 1:
             raise PericlesError(f"{name} = {value}; allowed: a number between 0 and 1")
-    from ._sweep import _bar
-
     with tempfile.TemporaryDirectory(prefix="pericles-") as place, _bar(None, progress) as advance:
         path = _curve_file(curve, (x, y), Path(place))
         options = {
@@ -216,7 +216,7 @@ def fit(
 
 
 def _bound(given: float | str, key: str) -> str:
-    return _overrides({key: given})[0].split("=", 1)[1]
+    return _toml.text(given, key)
 
 
 def _numbers(overrides: list[str]) -> list[tuple[str, float]]:

@@ -2,77 +2,30 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import _pericles
+from ._check import Check, Report, checked, file_of, renamed, temporary
 from ._cli import call, execute
-from ._deck import Deck, as_deck, warn
+from ._deck import Deck, as_deck
 from ._errors import PericlesError
-from ._model import table_html
+from ._model import Model
+from ._problems import warn
 from ._result import Record, Result, Table
+from ._simulation import Simulation
+from ._sweep import Sweep, opened
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from ._sweep import Sweep
     from ._types import Changes, DeckLike
 else:
     from ._lazy import np
-
-
-class Report(Record):
-    """Results of a command of the program; entries are also attributes, lists of numbers are arrays."""
-
-    def __getitem__(self, name: str) -> Any:
-        value = super().__getitem__(name)
-        if isinstance(value, list) and value and all(isinstance(entry, (int, float)) for entry in value):
-            return np.array(value)
-        if isinstance(value, list):
-            return [Record(entry) if isinstance(entry, dict) else entry for entry in value]
-        return value
-
-    def _repr_html_(self) -> str:
-        return table_html(type(self).__name__, self._entries)
-
-
-class Check(Report):
-    """What a run of a deck needs: size, memory, time step, estimated run time, and warnings. :class:`Report` has further
-    entries.
-
-    Attributes
-    ----------
-    points, bonds, steps, dimension : int
-        Size of the body and of the run.
-    dt, stable_step, end : float
-        The time step, its bound, and the end of the run, s.
-    horizon, spacing : float
-        Horizon and spacing, m.
-    memory_estimate : float
-        Memory of the run, bytes.
-    run_seconds : float
-        Estimated run time, s.
-    warnings : list of str
-        Warnings about the model.
-    """
-
-    points: int
-    bonds: int
-    steps: int
-    dimension: int
-    dt: float
-    stable_step: float | None
-    end: float
-    horizon: float
-    spacing: float
-    memory_estimate: float
-    run_seconds: float
-    warnings: list[str]
 
 
 class Dispersion(Report):
@@ -140,35 +93,6 @@ class Difference(Report):
         return bool(self.equal) and all(row["different"] == 0 for row in self._entries["rows"])
 
 
-def _temporary() -> Any:
-    import tempfile
-
-    return tempfile.TemporaryDirectory(prefix="pericles-")
-
-
-@contextlib.contextmanager
-def _file(deck: Deck) -> Iterator[list[str]]:
-    """Return the arguments that give a deck to the program: its file, or a copy with absolute paths."""
-    if deck._text is not None and os.path.exists(deck.name):
-        yield [deck.name, *(word for override in deck._overrides for word in ("--set", override))]
-        return
-    tables = deck.to_dict()
-    folder = Path(deck.name).parent if deck._text is not None or os.path.exists(deck.name) else Path()
-    _absolute(tables, folder)
-    with _temporary() as place:
-        path = Path(place) / "deck.toml"
-        Deck.from_dict(tables).write(path)
-        yield [str(path)]
-
-
-def _absolute(tables: Any, folder: Path) -> None:
-    for key, value in tables.items() if isinstance(tables, dict) else enumerate(tables):
-        if isinstance(value, (dict, list)):
-            _absolute(value, folder)
-        elif key == "file" and isinstance(value, str) and (folder / value).exists():
-            tables[key] = str((folder / value).absolute())
-
-
 def check(deck: DeckLike, *, set: Changes | None = None) -> Check:
     """Check a deck and report what its run needs, without running it.
 
@@ -184,20 +108,7 @@ def check(deck: DeckLike, *, set: Changes | None = None) -> Check:
     DeckError
         The deck is invalid.
     """
-    deck = as_deck(deck, set)
-    deck._core()
-    with _file(deck) as arguments:
-        found = call("check", *arguments)
-        return Check(_renamed(found, arguments[0], deck.name))
-
-
-def _renamed(value: Any, file: str, name: str) -> Any:
-    """Return results in which the name of a deck replaces its temporary file."""
-    if isinstance(value, dict):
-        return {key: _renamed(entry, file, name) for key, entry in value.items()}
-    if isinstance(value, list):
-        return [_renamed(entry, file, name) for entry in value]
-    return value.replace(file, name) if isinstance(value, str) else value
+    return checked(as_deck(deck, set))
 
 
 def modes(deck: DeckLike, *, count: int = 12, prestress: bool = False, set: Changes | None = None) -> Modes:
@@ -216,7 +127,7 @@ def modes(deck: DeckLike, *, count: int = 12, prestress: bool = False, set: Chan
     """
     deck = as_deck(deck, set)
     dimension = _dimension(deck)
-    with _file(deck) as arguments, _temporary() as place:
+    with file_of(deck) as arguments, temporary() as place:
         out = Path(place) / "modes"
         flags = ["--prestress"] if prestress else []
         found = Modes(call("modes", *arguments, "--count", str(count), "--out", out, "--quiet", *flags))
@@ -266,7 +177,7 @@ def dispersion(
     """
     deck = as_deck(deck, set)
     deck._core()
-    with _file(deck) as arguments, _temporary() as place:
+    with file_of(deck) as arguments, temporary() as place:
         out = Path(place) / "dispersion"
         flags = [] if direction is None else [f"--direction={','.join(map(repr, map(float, direction)))}"]
         flags += ["--measure"] if measure else []
@@ -335,7 +246,7 @@ def reproduce(study: str, *, full: bool = False) -> Reproduction:
     full : bool
         Include the rows that take long.
     """
-    with _temporary() as place:
+    with temporary() as place:
         flags = ["--full"] if full else []
         return Reproduction(call("reproduce", study, "--out", os.path.join(place, "out"), "--quiet", *flags))
 
@@ -399,9 +310,6 @@ def run(
     UnstableError
         The run became unstable; ``result`` has the results before.
     """
-    from ._model import Model
-    from ._simulation import Simulation
-
     deck = as_deck(deck, set)
     stem = Path(".") / deck.stem if out is None else None
     if deck.steps:
@@ -432,7 +340,5 @@ def open_(folder: str | os.PathLike[str]) -> Result | Sweep:
     Result or Sweep
         A sweep for the folder of a sweep, otherwise a result. :meth:`Result.open` and :meth:`Sweep.open` open one kind only.
     """
-    from ._sweep import opened
-
     found = opened(Path(folder))
     return Result.open(folder) if found is None else found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -11,20 +12,23 @@ from typing import TYPE_CHECKING, Any
 
 from . import _pericles, _toml
 from ._arrays import as_numbers, as_vectors, finite
-from ._deck import Deck, located, warn
 from ._errors import DeckError, PericlesError
+from ._html import table_html
+from ._problems import located, warn
+from ._simulation import Simulation, schedule
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
-    from ._simulation import Simulation
+    from ._deck import Deck
     from ._types import Field, Function, Points, Vector
 else:
     from ._lazy import np
 
 _AXES = "xyz"
 _SECTIONS = {1: "area", 2: "thickness"}
+_SECTION_UNITS = {1: "m2", 2: "m"}
 
 
 class Model:
@@ -79,7 +83,9 @@ class Model:
             if key in body and not (key == "shape" and body[key] == "points"):
                 raise PericlesError(f"the body has points from an array; remove `{key}` from [body]")
         section = self._section(body, dimension)
-        spacing = _length(body.get("spacing"))
+        spacing = body.get("spacing")
+        if spacing is not None:
+            spacing = _in_unit(spacing, "m", "body.spacing")
         if volumes is None:
             if spacing is None:
                 raise PericlesError("give volumes (m³) of the points, or `spacing` in [body] for those of cells with these sides")
@@ -106,18 +112,7 @@ class Model:
     def _section(self, body: Mapping[str, Any], dimension: int) -> float:
         key = _SECTIONS.get(dimension)
         given = body.get(key) if key else None
-        if given is None:
-            return 1.0
-        if isinstance(given, str):
-            probe = {1: "bar", 2: "plate"}[dimension]
-            size: dict[str, Any] = {"length": 1} if dimension == 1 else {"size": [1, 1], "plane": "stress"}
-            tables = {
-                "body": {"shape": probe, **size, "spacing": 0.1, str(key): given},
-                "material": {"density": 1, "youngs_modulus": 1, "horizon_ratio": 3},
-                "time": {"end": 1},
-            }
-            return float(Deck.from_dict(tables).values()["body"][str(key)])
-        return float(given)
+        return 1.0 if given is None else _in_unit(given, _SECTION_UNITS[dimension], f"body.{key}")
 
     def _add_set(self, name: str, numbers: NDArray[np.uint32]) -> None:
         if name in (self.deck.get("sets") or {}) or name in self._sets or name == "all":
@@ -306,12 +301,10 @@ class Model:
             raise PericlesError(
                 "a traction by an array or function needs the loaded area, such as area=\"50 mm2\"; tractions by lists find the area of a face"
             )
-        tables = {
-            "body": {"shape": "bar", "length": 1, "spacing": 0.1, "area": area},
-            "material": {"density": 1, "youngs_modulus": 1, "horizon_ratio": 3},
-            "time": {"end": 1},
-        }
-        return float(Deck.from_dict(tables).values()["body"]["area"])
+        found = _in_unit(area, "m2", "area")
+        if not 0 < found < math.inf:
+            raise PericlesError(f"area = {area!r}; allowed: a positive area")
+        return found
 
     def prescribe(
         self,
@@ -449,8 +442,6 @@ class Model:
         -------
         Simulation
         """
-        from ._simulation import Simulation, schedule
-
         keep = [keep] if isinstance(keep, str) else list(keep)
         kind, value = schedule(every, time, count) or ("count", 100)
         if out is not None:
@@ -472,22 +463,6 @@ class Model:
         return table_html("Model", self._facts)
 
 
-def table_html(title: str, facts: Mapping[str, Any]) -> str:
-    """Return facts as a table, with warnings in colour."""
-    import html
-
-    rows = []
-    for key, value in facts.items():
-        if value is None or isinstance(value, (list, dict)):
-            continue
-        shown = f"{value:.6g}" if isinstance(value, float) else str(value)
-        rows.append(f"<tr><td>{html.escape(key.replace('_', ' '))}</td><td>{html.escape(shown)}</td></tr>")
-    warnings = "".join(
-        f'<p style="color:#b36b00">warning: {html.escape(text)}</p>' for text in facts.get("warnings") or []
-    )
-    return f"<b>{html.escape(title)}</b><table>{''.join(rows)}</table>{warnings}"
-
-
 def _is_vector(given: Any) -> bool:
     """Return whether a value has one entry per axis, as in a deck."""
     if isinstance(given, (list, tuple)):
@@ -505,13 +480,9 @@ def _named(on: Any) -> str:
     return f"`{on}`" if isinstance(on, str) else "points of an array"
 
 
-def _length(given: Any) -> float | None:
-    """Return a length of a deck in m."""
-    if given is None or isinstance(given, (int, float)):
-        return None if given is None else float(given)
-    tables = {
-        "body": {"shape": "bar", "length": given, "spacing": given},
-        "material": {"density": 1, "youngs_modulus": 1, "horizon_ratio": 3},
-        "time": {"end": 1},
-    }
-    return float(Deck.from_dict(tables).values()["body"]["spacing"])
+def _in_unit(given: Any, unit: str, key: str) -> float:
+    """Return a number, or a text with a unit as in decks, in an SI unit."""
+    value = _pericles.in_unit(given, unit) if isinstance(given, str) else float(given)
+    if value is None:
+        raise PericlesError(f'{key} = "{given}"; allowed: a number in {unit}, or a text with a unit, such as "2 {unit}"')
+    return value

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _pericles
 from ._errors import OutputError, PericlesError, PericlesWarning
+from ._html import table_html
 
 if TYPE_CHECKING:
     import numpy as np
@@ -702,8 +703,6 @@ class Result:
         return f"<pericles.Result {where}: {self._report.get('status')}, {count} outputs of {', '.join(self.fields) or 'no fields'}>"
 
     def _repr_html_(self) -> str:
-        from ._model import table_html
-
         title = f"Result {self._folder or 'in memory'}: {self._report.get('status')}"
         audit = {**(self._report.get("audit") or {}), "warnings": self.warnings}
         return table_html(title, audit)

@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _pericles
-from ._deck import _overrides, as_deck, warn
+from ._deck import _overrides, as_deck
 from ._errors import OutputError, PericlesError, UnstableError
+from ._problems import warn
 from ._result import Result, optional
 
 if TYPE_CHECKING:

@@ -29,6 +29,12 @@ def _text(text: str) -> str:
     return '"' + "".join(out) + '"'
 
 
+def text(value: Any, key: str) -> str:
+    """Return the value of a key as in an override, ``key=value``."""
+    value = plain(value, key)
+    return value if isinstance(value, str) else _value(value)
+
+
 def plain(value: Any, path: str = "") -> Any:
     """Return a deck value without NumPy types."""
     if isinstance(value, (str, bool)) or value is None:

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicU8, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
 use numpy::PyArray2;
-use pericles::observe::{Energies, Field, ObserveError, Observer};
+use pericles::observe::{Energies, Field, FieldKind, ObserveError, Observer};
 use pericles::{Archive, Checkpointed};
 use pericles_io::in_user_order;
 use pericles_run::units::quantity;
@@ -95,10 +95,7 @@ pub fn energies<'py>(py: Python<'py>, energies: &Energies) -> PyResult<Bound<'py
 
 /// Returns the field with a name of the package: that in files, in lower case.
 pub fn field_named(name: &str) -> PyResult<Field> {
-    let found = Field::ALL
-        .into_iter()
-        .find(|field| field.name().eq_ignore_ascii_case(name));
-    found.ok_or_else(|| {
+    Field::named(name).ok_or_else(|| {
         let names: Vec<String> = Field::ALL.map(|field| field.name().to_lowercase()).to_vec();
         plain(&format!(
             "there is no field \"{name}\"; allowed: {}",
@@ -110,20 +107,14 @@ pub fn field_named(name: &str) -> PyResult<Field> {
 /// Returns the unit of a field, empty for dimensionless fields and those that only files have.
 #[pyfunction]
 pub fn field_unit(name: &str) -> &'static str {
-    let found = Field::ALL
-        .into_iter()
-        .find(|field| field.name().eq_ignore_ascii_case(name));
-    found.map_or("", Field::unit)
+    Field::named(name).map_or("", Field::unit)
 }
 
 /// Returns the names of the components of a field for a body of a dimension, such as `xx`; none for scalars and fields that only
 /// files have.
 #[pyfunction]
 pub fn field_components(name: &str, dimension: usize) -> Vec<&'static str> {
-    let found = Field::ALL
-        .into_iter()
-        .find(|field| field.name().eq_ignore_ascii_case(name));
-    found.map_or_else(Vec::new, |field| {
+    Field::named(name).map_or_else(Vec::new, |field| {
         field.components(dimension.clamp(1, 3)).to_vec()
     })
 }
@@ -223,9 +214,9 @@ impl Snapshot {
 pub fn squeezed<'py>(array: Bound<'py, PyArray2<f64>>, name: &str) -> PyResult<Bound<'py, PyAny>> {
     let field = field_named(name)?;
     let array = array.into_any();
-    match field.is_vector() || field.is_tensor() {
-        true => Ok(array),
-        false => array.call_method1("reshape", (-1,)),
+    match matches!(field.kind(), FieldKind::Scalar | FieldKind::Integer) {
+        true => array.call_method1("reshape", (-1,)),
+        false => Ok(array),
     }
 }
 

@@ -65,6 +65,12 @@ pub fn seconds(text: &str) -> Option<f64> {
     pericles_deck::seconds(text)
 }
 
+/// A text with a unit as in decks, such as "2 mm", in an SI unit such as "m"; None for other texts and units of other quantities.
+#[pyfunction]
+pub fn in_unit(text: &str, unit: &str) -> Option<f64> {
+    pericles_deck::in_unit(text, unit)
+}
+
 /// Whether a text is a number with a unit, not an expression.
 #[pyfunction]
 pub fn is_quantity(text: &str) -> bool {

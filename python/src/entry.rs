@@ -75,30 +75,7 @@ pub fn cancellable<T: Send + 'static>(
     cancel: &Cancel,
     work: impl FnOnce() -> PyResult<T> + Send + 'static,
 ) -> PyResult<T> {
-    enter()?;
-    py.detach(|| {
-        let (sender, receiver) = channel();
-        std::thread::spawn(move || {
-            let _ = sender.send(guarded(work));
-        });
-        let mut raised = None;
-        loop {
-            match receiver.recv_timeout(POLL) {
-                Ok(made) => return raised.map_or(made, Err),
-                Err(RecvTimeoutError::Timeout) => {
-                    if let Err(error) = Python::attach(|py| py.check_signals()) {
-                        cancel.cancel();
-                        raised = Some(error);
-                    }
-                }
-                Err(RecvTimeoutError::Disconnected) => {
-                    return Err(errors::plain(
-                        "the thread of a computation ended without a result",
-                    ));
-                }
-            }
-        }
-    })
+    attended(py, Some(cancel), work)
 }
 
 /// Runs `work`, which cannot be interrupted, in a thread of its own and waits for it; Ctrl-C ends the wait at once.
@@ -106,17 +83,36 @@ pub fn waiting<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce() -> PyResult<T> + Send + 'static,
 ) -> PyResult<T> {
+    attended(py, None, work)
+}
+
+fn attended<T: Send + 'static>(
+    py: Python<'_>,
+    cancel: Option<&Cancel>,
+    work: impl FnOnce() -> PyResult<T> + Send + 'static,
+) -> PyResult<T> {
     enter()?;
     py.detach(|| {
         let (sender, receiver) = channel();
         std::thread::spawn(move || {
-            // Nobody listens any more after Ctrl-C.
+            // The receiver is gone if Ctrl-C has ended the wait.
             let _ = sender.send(guarded(work));
         });
+        let mut raised = None;
         loop {
             match receiver.recv_timeout(POLL) {
-                Ok(made) => return made,
-                Err(RecvTimeoutError::Timeout) => Python::attach(|py| py.check_signals())?,
+                Ok(made) => return raised.map_or(made, Err),
+                Err(RecvTimeoutError::Timeout) => {
+                    let signals = Python::attach(|py| py.check_signals());
+                    match (signals, cancel) {
+                        (Ok(()), _) => {}
+                        (Err(error), Some(cancel)) => {
+                            cancel.cancel();
+                            raised = Some(error);
+                        }
+                        (Err(error), None) => return Err(error),
+                    }
+                }
                 Err(RecvTimeoutError::Disconnected) => {
                     return Err(errors::plain(
                         "the thread of a computation ended without a result",

@@ -24,7 +24,7 @@ mod _pericles {
     #[pymodule_export]
     use crate::callback::{Snapshot, field_components, field_unit};
     #[pymodule_export]
-    use crate::deck::{Deck, is_quantity, seconds};
+    use crate::deck::{Deck, in_unit, is_quantity, seconds};
     #[pymodule_export]
     use crate::entry::{after_fork, set_threads, threads};
     #[pymodule_export]

@@ -7,6 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use clap::Parser;
+use pericles::observe::{Field, FieldKind};
 use pericles_deck::Deck;
 use pericles_run::{build, readers};
 
@@ -223,4 +224,25 @@ fn examples_in_the_book_are_up_to_date() {
         }
     }
     assert!(count >= 6, "{count}");
+}
+
+/// The table of fields is that of the engine, with `1` for dimensionless numbers and `–` for integers.
+#[test]
+fn the_page_of_outputs_has_all_fields_with_their_units() {
+    let page = fs::read_to_string(root().join("book/src/outputs.md")).unwrap();
+    let rows: Vec<[&str; 2]> = (page.lines())
+        .filter_map(|line| {
+            let mut cells = line.strip_prefix("| `")?.split(" | ");
+            Some([cells.next()?.strip_suffix('`')?, cells.next()?])
+        })
+        .collect();
+    for field in Field::ALL {
+        let unit = match (field.kind(), field.unit()) {
+            (FieldKind::Integer, _) => "–",
+            (_, "") => "1",
+            (_, unit) => unit,
+        };
+        let row = [field.name(), unit];
+        assert!(rows.contains(&row), "the page lacks the row {row:?}");
+    }
 }

@@ -13,15 +13,15 @@ pub(crate) fn opening(report: &Report, folder: &Path) {
     let model = &report.model;
     console::note(format_args!(
         "{} points, {} bonds, {} steps of {}, about {} of memory; results in {}",
-        count(model.points as u64),
-        count(model.bonds),
-        count(model.steps),
-        quantity(model.dt, "s"),
-        bytes(model.memory_estimate),
+        count(model.count("points")),
+        count(model.count("bonds")),
+        count(model.count("steps")),
+        quantity(model.number("dt").unwrap_or_default(), "s"),
+        bytes(model.count("memory_estimate")),
         folder.display()
     ));
-    if let Some(start) = &model.start {
-        console::note(format_args!("starting from the {}", start.line()));
+    if let Some(start) = model.words("start") {
+        console::note(format_args!("starting from the {start}"));
     }
 }
 
@@ -39,12 +39,12 @@ pub(crate) fn closing(report: &Report, place: &Path) -> Result<(), IoError> {
     console::print(format_args!(
         "{word} after step {} of {}, t = {}, in {}: {} million bond updates/s on {} ({})",
         count(progress.last_step),
-        count(model.steps),
+        count(model.count("steps")),
         quantity(progress.t, "s"),
         duration(progress.wall_seconds),
         significant(1e-6 * progress.directed_bond_updates_per_second, 3),
         threads(rayon::current_num_threads()),
-        model.instruction_set,
+        model.text("instruction_set"),
     ))?;
     if let Some(sharing) = &report.sharing {
         console::print(format_args!("{}", sharing.line()))?;

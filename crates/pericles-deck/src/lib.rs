@@ -177,7 +177,7 @@ pub use processor::{DeviceKind, DevicePrecision, Processor};
 pub use property::{
     MaterialFunction, MaterialFunctions, MaterialProperty, Property, PropertyFunction,
 };
-pub use quantity::{is_quantity, metres, seconds, si_unit};
+pub use quantity::{in_unit, is_quantity, metres, seconds, si_unit};
 pub use region::Depth;
 pub use remark::{BuildError, Keys, ModelProblem, ModelWarning, Remark};
 pub use schema::{json_schema, reference, specimens, unit_of_key};

@@ -183,6 +183,19 @@ pub fn metres(text: &str) -> Option<f64> {
     measured(text, Quantity::Length)
 }
 
+/// Parses a quantity as in decks and returns it in an SI unit: a text with a unit, or a plain number. None for other texts and
+/// for units of other quantities.
+///
+/// ```
+/// assert_eq!(pericles_deck::in_unit("2 mm", "m"), Some(0.002));
+/// assert_eq!(pericles_deck::in_unit("2 mm", "m2"), None);
+/// ```
+pub fn in_unit(text: &str, unit: &str) -> Option<f64> {
+    let wanted = units::parse(&format!("1 {unit}")).ok()?.dimension?;
+    let measure = units::parse(text).ok()?;
+    (measure.dimension.unwrap_or(wanted) == wanted).then_some(measure.value)
+}
+
 /// Returns whether a text is a number with a unit as in decks, or a plain number.
 ///
 /// ```

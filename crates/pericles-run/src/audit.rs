@@ -99,6 +99,27 @@ pub struct Audit {
 }
 
 impl Audit {
+    /// SI units of the numbers.
+    pub(crate) const UNITS: [(&str, &[&str]); 2] = [
+        (
+            "J",
+            &[
+                "kinetic_energy",
+                "elastic_energy",
+                "dissipated_energy",
+                "contact_energy",
+                "contact_dissipated",
+                "impactor_kinetic",
+                "external_work",
+                "initial_energy",
+                "scheme_correction",
+                "balance",
+                "largest_balance",
+            ],
+        ),
+        ("kg m/s", &["momentum", "impulse", "momentum_error"]),
+    ];
+
     /// Evaluates the current state, without warnings. `largest_balance` is the largest magnitude of the energy balance in
     /// the history, J.
     pub(crate) fn of(
@@ -107,6 +128,7 @@ impl Audit {
         largest_balance: f64,
         facts: &Facts,
     ) -> Self {
+        let [frequency, dt] = ["limiting_frequency", "dt"].map(|key| facts.number(key));
         let (system, state) = (simulation.system(), simulation.state());
         let snapshot = simulation.snapshot();
         let energies = snapshot.energies();
@@ -153,7 +175,7 @@ impl Audit {
                 0.0 => 0.0,
                 scale => balance / scale,
             },
-            omega_dt: facts.limiting_frequency.map(|omega| omega * facts.dt),
+            omega_dt: frequency.zip(dt).map(|(omega, dt)| omega * dt),
             evaluated_points,
             force_rounding: system.operator().rounding(&simulation.state().u),
             mirror_errors: start.symmetries.errors(simulation),

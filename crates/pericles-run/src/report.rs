@@ -1,5 +1,6 @@
 //! `run.json`: source, model, progress, and balance of energy and momentum.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::OnceLock;
 
@@ -43,6 +44,8 @@ pub struct Report {
     program: Program,
     /// Properties of the model.
     pub model: Facts,
+    /// SI units of numbers of `model`, `audit` and `progress`.
+    units: BTreeMap<&'static str, String>,
     /// Progress and performance.
     pub progress: Span,
     /// Division among processes and time in communication at the end; `None` for a single process.
@@ -88,6 +91,26 @@ pub struct Span {
     pub peak_memory: Option<u64>,
 }
 
+impl Span {
+    /// SI units of the numbers.
+    const UNITS: [(&str, &[&str]); 3] = [
+        ("s", &["t", "wall_seconds"]),
+        ("1/s", &["directed_bond_updates_per_second"]),
+        ("B", &["peak_memory"]),
+    ];
+}
+
+/// Returns the units of the numbers of a report.
+fn units(facts: &Facts) -> BTreeMap<&'static str, String> {
+    let model = facts
+        .iter()
+        .filter(|fact| fact.is_recorded && !fact.unit.is_empty());
+    let model = model.map(|fact| (fact.key, fact.unit.clone()));
+    let later = Audit::UNITS.into_iter().chain(Span::UNITS);
+    let later = later.flat_map(|(unit, keys)| keys.iter().map(move |key| (*key, facts.unit(unit))));
+    model.chain(later).collect()
+}
+
 /// The source: a deck with the values read from it, or a model.
 #[derive(Debug, Serialize)]
 enum Given {
@@ -128,6 +151,7 @@ impl Report {
                 threads: rayon::current_num_threads(),
                 machine: machine::words(),
             },
+            units: units(&facts),
             model: facts,
             progress: Span {
                 first_step,
@@ -153,7 +177,7 @@ impl Report {
     pub(crate) fn note_progress(&mut self, simulation: &Simulation, wall_seconds: f64) {
         let state = simulation.state();
         let first_step = self.progress.first_step;
-        let updates = (state.step - first_step) as f64 * self.model.directed_bonds as f64;
+        let updates = (state.step - first_step) as f64 * self.model.count("directed_bonds") as f64;
         self.progress = Span {
             first_step,
             last_step: state.step,

@@ -9,7 +9,6 @@ use serde_json::Value;
 use crate::error::RunError;
 use crate::machine;
 use crate::source::SourceRecord;
-use crate::units::{unit_of_number, unit_per};
 
 /// The results of a run.
 pub struct Results {
@@ -95,8 +94,8 @@ impl Results {
 
     /// Returns the SI unit of a number of `run.json`, such as `audit.balance`; empty for ratios and counts.
     pub fn unit_of(&self, name: &str) -> String {
-        let per = self.value("/model/units_per").and_then(Value::as_str);
-        unit_per(unit_of_number(name), per)
+        let key = name.rsplit('.').next().unwrap_or(name);
+        self.text(&format!("/units/{key}")).to_owned()
     }
 
     /// Returns a count of `run.json`; zero if missing.

@@ -434,10 +434,11 @@ fn resume_warnings(stored: &Stored, facts: &Facts) -> Vec<String> {
             metadata.version
         ));
     }
-    if metadata.instruction_set != facts.instruction_set {
+    let instruction_set = facts.text("instruction_set");
+    if metadata.instruction_set != instruction_set {
         warnings.push(format!(
-            "the run was started with instruction set {} and is resumed with {}: results may not be bitwise identical",
-            metadata.instruction_set, facts.instruction_set
+            "the run was started with instruction set {} and is resumed with {instruction_set}: results may not be bitwise identical",
+            metadata.instruction_set
         ));
     }
     warnings

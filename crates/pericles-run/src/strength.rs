@@ -152,7 +152,7 @@ impl StrengthFacts {
 
 impl SofteningFacts {
     /// Returns the facts of all materials that soften beyond a stretch, the body's material first.
-    pub(crate) fn of(model: &Model, assembly: &Assembly) -> Vec<Self> {
+    pub fn of(model: &Model, assembly: &Assembly) -> Vec<Self> {
         let facts = materials(model, assembly).filter_map(|own| match own.softening.strength {
             None => Self::of_material(&own, assembly),
             Some(_) => None,

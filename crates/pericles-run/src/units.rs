@@ -42,57 +42,7 @@ pub fn percent(ratio: f64) -> String {
     format!("{} %", significant(100.0 * ratio, 2))
 }
 
-pub use pericles::units::{count, number_of, quantity, significant, unit_per};
-
-/// Returns the SI unit of a number of `run.json` by the last part of its name; empty for ratios and counts.
-///
-/// Quantities of the whole body may be per unit of its section, see [`unit_per`].
-pub fn unit_of_number(name: &str) -> &'static str {
-    const UNITS: [(&str, &[&str]); 12] = [
-        ("m", &["spacing", "horizon"]),
-        (
-            "s",
-            &["dt", "stable_step", "t", "wall_seconds", "force_time"],
-        ),
-        (
-            "rad/s",
-            &[
-                "highest_frequency",
-                "highest_frequency_bound",
-                "limiting_frequency",
-                "limiting_frequency_bound",
-                "contact_frequency",
-            ],
-        ),
-        ("Pa", &["youngs_modulus", "bulk_modulus", "shear_modulus"]),
-        ("J/m2", &["fracture_energy"]),
-        ("J/m6", &["critical_bond_energy"]),
-        (
-            "J",
-            &[
-                "kinetic_energy",
-                "elastic_energy",
-                "dissipated_energy",
-                "contact_energy",
-                "contact_dissipated",
-                "impactor_kinetic",
-                "external_work",
-                "initial_energy",
-                "scheme_correction",
-                "balance",
-                "largest_balance",
-            ],
-        ),
-        ("kg", &["mass"]),
-        ("N", &["force"]),
-        ("kg m/s", &["momentum", "impulse", "momentum_error"]),
-        ("B", &["memory_estimate", "peak_memory"]),
-        ("1/s", &["directed_bond_updates_per_second"]),
-    ];
-    let key = name.rsplit('.').next().unwrap_or(name);
-    let found = UNITS.iter().find(|(_, keys)| keys.contains(&key));
-    found.map_or("", |(unit, _)| unit)
-}
+pub use pericles::units::{count, number_of, quantity, significant};
 
 /// Formats an angular frequency (1/s) with five significant digits: `1.6330`, `5.8244e6`.
 pub fn frequency(omega: f64) -> String {
@@ -119,20 +69,6 @@ mod tests {
             (f64::NAN, "unknown time"),
         ] {
             assert_eq!(duration(seconds), text);
-        }
-    }
-
-    #[test]
-    fn numbers_of_reports_have_units() {
-        for (name, unit) in [
-            ("audit.elastic_energy", "J"),
-            ("audit.balance", "J"),
-            ("audit.balance_over_work", ""),
-            ("model.fracture_energy", "J/m2"),
-            ("model.dt", "s"),
-            ("audit.broken_bonds", ""),
-        ] {
-            assert_eq!(unit_of_number(name), unit, "{name}");
         }
     }
 

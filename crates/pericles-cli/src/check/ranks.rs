@@ -1,11 +1,10 @@
 //! Prediction of runs on several processes.
 
 use pericles_run::units::{bytes, count, percent, quantity, significant};
-use pericles_run::{Assembly, BANDWIDTH, Forecast, LATENCY, Source};
-use serde_json::json;
+use pericles_run::{Assembly, BANDWIDTH, Facts, Forecast, LATENCY, Section, Source};
+use serde_json::{Value, json};
 
 use super::StepCost;
-use super::line::Line;
 use crate::error::CliError;
 
 /// Divides the body among each of the numbers of processes.
@@ -24,9 +23,10 @@ pub(super) fn forecasts(
     counts.iter().map(forecast).collect()
 }
 
-/// Returns the lines about all numbers of processes; without the cost of a step, times are not predicted.
-pub(super) fn lines(forecasts: &[Forecast], cost: Option<StepCost>) -> Vec<Line> {
-    let mut lines: Vec<Line> = forecasts.iter().map(|one| line(one, cost)).collect();
+/// Adds the lines about all numbers of processes; without the cost of a step, times are not predicted.
+pub(super) fn add_lines(facts: &mut Facts, forecasts: &[Forecast], cost: Option<StepCost>) {
+    let entries = forecasts.iter().map(|one| entry(one, cost));
+    facts.list(Section::Cost, "processes", false, entries);
     if let (Some(_), Some(cost)) = (forecasts.first(), cost) {
         let text = format!(
             "model, not measured: this machine per process ({} per step of the whole body), {} per message, {} per second; no \
@@ -35,16 +35,15 @@ pub(super) fn lines(forecasts: &[Forecast], cost: Option<StepCost>) -> Vec<Line>
             quantity(LATENCY, "s"),
             quantity(BANDWIDTH, "B"),
         );
-        let model = Line::new("time on processes", text)
-            .with("step_seconds", cost.seconds)
-            .with("message_latency", LATENCY)
-            .with("message_bandwidth", BANDWIDTH);
-        lines.push(model);
+        facts
+            .line(Section::Cost, "time on processes", text)
+            .checked("step_seconds", "s", cost.seconds)
+            .checked("message_latency", "s", LATENCY)
+            .checked("message_bandwidth", "B/s", BANDWIDTH);
     }
-    lines
 }
 
-fn line(forecast: &Forecast, cost: Option<StepCost>) -> Line {
+fn entry(forecast: &Forecast, cost: Option<StepCost>) -> (&'static str, String, Value) {
     let Forecast {
         processes,
         points,
@@ -74,5 +73,5 @@ fn line(forecast: &Forecast, cost: Option<StepCost>) -> Line {
     );
     let mut value = json!(forecast);
     value["step_seconds"] = json!(step);
-    Line::new("processes", text).with_entry("processes", value)
+    ("processes", text, value)
 }

@@ -2,17 +2,16 @@
 
 use pericles_run::refinement::{Comparison, RefinementFacts};
 use pericles_run::units::{count, percent, quantity, significant};
+use pericles_run::{Facts, Section};
 use serde_json::json;
 
-use super::line::Line;
-
-/// Returns the lines about a multirate scheme.
-pub(super) fn lines(
+/// Adds the lines about a multirate scheme.
+pub(super) fn add_lines(
+    all: &mut Facts,
     facts: &RefinementFacts,
-    scheme: &str,
-    dt: f64,
+    (scheme, dt): (&str, f64),
     comparison: &Comparison,
-) -> Vec<Line> {
+) {
     let fine_dt = dt / f64::from(facts.ratio);
     let frequencies = match (facts.omega_dt, facts.omega_dt_fine) {
         (Some(coarse), Some(fine)) => format!("; ω dt {coarse:.2} coarse, {fine:.2} fine"),
@@ -46,15 +45,19 @@ pub(super) fn lines(
         significant(facts.speed_up_over_verlet, 3),
         significant(over_verlet, 3),
     );
-    vec![
-        Line::new("multirate steps", steps).with("dt_fine", fine_dt),
-        Line::new("multirate zones", zones),
-        Line::new("multirate cost", cost).with(
-            "refinement_by_clock",
-            json!({ "speed_up": over_uniform, "speed_up_over_verlet": over_verlet }),
-        ),
-        Line::new("net speed-up", verdict(facts, scheme, comparison)),
-    ]
+    all.line(Section::Cost, "multirate steps", steps)
+        .checked("dt_fine", "s", fine_dt);
+    all.line(Section::Cost, "multirate zones", zones);
+    all.line(Section::Cost, "multirate cost", cost).checked(
+        "refinement_by_clock",
+        "",
+        json!({ "speed_up": over_uniform, "speed_up_over_verlet": over_verlet }),
+    );
+    all.line(
+        Section::Cost,
+        "net speed-up",
+        verdict(facts, scheme, comparison),
+    );
 }
 
 /// Returns the name of the scheme with a single time step.

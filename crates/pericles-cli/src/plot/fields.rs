@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use pericles::observe::Field;
+use pericles::observe::{Field, FieldKind};
 use pericles::space::PointCloud;
 use pericles_deck::Model;
 use pericles_io::observers::{DrawnState, ImpactorSurfaces, PictureOf};
@@ -197,7 +197,7 @@ fn drawable(dimension: usize) -> Vec<PictureOf> {
 
 /// Returns the arrays of the files that hold a field.
 fn columns(field: Field, dimension: usize) -> Vec<String> {
-    if !field.is_tensor() {
+    if field.kind() != FieldKind::Tensor {
         return vec![field.name().to_owned()];
     }
     let components = field.components(dimension).iter();

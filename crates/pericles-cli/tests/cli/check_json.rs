@@ -164,6 +164,7 @@ fn the_json_of_check_contains_every_printed_number() {
         "wave/two-materials",
         "multi-time-step/notched-plate",
         "absorbing/free-end",
+        "contact/two-rings",
     ] {
         succeed(folder, &format!("new {example} deck.toml"));
         assert_json_holds_what_is_printed(folder, "deck.toml");

@@ -416,8 +416,8 @@ pub enum Fault {
     /// Fields that are not available.
     #[error("{fields} not available here: {reason}")]
     NoFields {
-        /// The fields, with the verb: `Stress is`.
-        fields: &'static str,
+        /// The fields, with the verb: `the field Stress is`.
+        fields: String,
         /// The reason.
         reason: &'static str,
     },

@@ -268,28 +268,16 @@ pub(super) fn field_names(dimension: Option<usize>) -> Vec<(String, FieldCompone
     named.collect()
 }
 
-/// Quantity of the values of a field.
+/// Quantity of the values of a field; those without a unit in decks are numbers.
 pub(super) fn quantity(field: Field) -> Quantity {
-    match field {
-        Field::Displacement | Field::Radius => Quantity::Length,
-        Field::Velocity => Quantity::Velocity,
-        Field::ForceDensity | Field::ExternalForce | Field::Reaction | Field::ContactForce => {
-            Quantity::ForceDensity
-        }
-        Field::Stress
-        | Field::EquivalentStress
-        | Field::VonMisesStress
-        | Field::PrincipalStress => Quantity::Traction,
-        Field::Damage
-        | Field::Strain
-        | Field::Dilatation
-        | Field::PlasticStrain
-        | Field::YieldFlag
-        | Field::PointId
-        | Field::FragmentId => Quantity::Number,
-        Field::StrainEnergyDensity | Field::KineticEnergyDensity => Quantity::EnergyDensity,
-        Field::Volume => Quantity::Number,
-        Field::Temperature => Quantity::Temperature,
-        Field::HeatFlux => Quantity::HeatFlux,
+    match field.unit() {
+        "m" => Quantity::Length,
+        "m/s" => Quantity::Velocity,
+        "N/m³" => Quantity::ForceDensity,
+        "Pa" => Quantity::Traction,
+        "J/m³" => Quantity::EnergyDensity,
+        "K" => Quantity::Temperature,
+        "W/m²" => Quantity::HeatFlux,
+        _ => Quantity::Number,
     }
 }

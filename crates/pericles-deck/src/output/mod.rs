@@ -11,7 +11,7 @@ pub use fields::{FieldBlocks, FieldFormat, FieldNames, FieldOutput, PointNumber}
 pub use picture::{Picture, PictureColours, PictureFormat, PictureLook};
 pub use profile::Profile;
 
-use pericles::observe::{Field, Schedule};
+use pericles::observe::{Field, FieldNeed, Schedule};
 use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
@@ -310,29 +310,16 @@ impl Output {
             && self.fields.formats.contains(&FieldFormat::Vtu)
     }
 
-    /// Returns whether a field is written.
-    pub fn wants(&self, wanted: Field) -> bool {
-        self.wants_any(|field| field == wanted)
-    }
-
-    /// Returns whether stress or strain is written, which needs single bonds.
-    pub fn wants_tensors(&self) -> bool {
-        self.wants_any(Field::is_of_bonds)
-    }
-
-    fn wants_any(&self, is_wanted: impl Fn(Field) -> bool) -> bool {
+    /// Returns the requested fields that need a property of the body, each once.
+    pub fn needing(&self, need: FieldNeed) -> Vec<Field> {
         let drawn = self.pictures.iter().map(|picture| picture.field);
         let extremes = self.history.extremes.iter().map(|(field, _)| *field);
         let profiles = self.profiles.iter().map(|profile| profile.field);
-        self.fields
-            .names
-            .fields
-            .iter()
-            .copied()
-            .chain(drawn)
-            .chain(extremes)
-            .chain(profiles)
-            .any(is_wanted)
+        let names = self.fields.names.fields.iter().copied();
+        let all: Vec<Field> = names.chain(drawn).chain(extremes).chain(profiles).collect();
+        let mut needing = Field::ALL.to_vec();
+        needing.retain(|field| field.need() == Some(need) && all.contains(field));
+        needing
     }
 }
 

@@ -1,6 +1,6 @@
 //! The columns of field files: fields of a snapshot, and numbers of points that do not change.
 
-use pericles::observe::{Field, ObserveError, Snapshot};
+use pericles::observe::{Field, FieldKind, ObserveError, Snapshot};
 use pericles_mesh::results::FieldSpec;
 
 use crate::numbering::Numbering;
@@ -43,7 +43,8 @@ impl FieldSelection {
             let whole = snapshot.whole(field)?;
             Some(Column {
                 name: field.name().to_owned(),
-                kind: Kind::of(field),
+                kind: field.kind(),
+                components: field.components(snapshot.system().cloud().dimension()),
                 unit: field.unit(),
                 values: numbering.apply(&whole).into_owned(),
             })
@@ -56,7 +57,8 @@ impl FieldSelection {
             let numbers: Vec<f64> = mark.numbers.iter().copied().map(f64::from).collect();
             Column {
                 name: mark.name.clone(),
-                kind: Kind::Integer,
+                kind: FieldKind::Integer,
+                components: &[],
                 unit: "",
                 values: numbering.apply(&numbers).into_owned(),
             }
@@ -68,14 +70,14 @@ impl FieldSelection {
     pub(super) fn specs(&self, dimension: usize) -> Vec<FieldSpec> {
         let of_fields = self.fields.iter().flat_map(|&field| {
             let name = field.name();
-            match Kind::of(field) {
-                Kind::Tensor => {
+            match field.kind() {
+                FieldKind::Tensor => {
                     let parts = field.components(dimension).iter();
                     let part = |part: &&str| FieldSpec::new(format!("{name}_{part}"), 1);
                     parts.map(part).collect()
                 }
-                Kind::Vector => vec![FieldSpec::new(name, dimension)],
-                Kind::Scalar | Kind::Integer => vec![FieldSpec::new(name, 1)],
+                FieldKind::Vector | FieldKind::List => vec![FieldSpec::new(name, dimension)],
+                FieldKind::Scalar | FieldKind::Integer => vec![FieldSpec::new(name, 1)],
             }
         });
         let marks = self.marks.iter();
@@ -84,33 +86,11 @@ impl FieldSelection {
     }
 }
 
-/// How the values of a point belong together.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Scalar,
-    Vector,
-    Tensor,
-    Integer,
-}
-
-impl Kind {
-    fn of(field: Field) -> Self {
-        if field.is_tensor() {
-            Self::Tensor
-        } else if field.is_vector() {
-            Self::Vector
-        } else if field.is_integer() {
-            Self::Integer
-        } else {
-            Self::Scalar
-        }
-    }
-}
-
 /// A named field in the user's order of points, component-major.
 pub(super) struct Column {
     pub(super) name: String,
-    kind: Kind,
+    kind: FieldKind,
+    components: &'static [&'static str],
     unit: &'static str,
     values: Vec<f64>,
 }
@@ -136,7 +116,7 @@ impl Column {
     /// The values as arrays of a file that keeps each component of a tensor as an array of its own; `points` is their number.
     pub(super) fn arrays(&self, points: usize) -> Vec<&[f64]> {
         match self.kind {
-            Kind::Tensor => self.values.chunks(points).collect(),
+            FieldKind::Tensor => self.values.chunks(points).collect(),
             _ => vec![&self.values],
         }
     }
@@ -149,14 +129,16 @@ impl Column {
             array,
         };
         let whole = match self.kind {
-            Kind::Scalar => VtuArray::Scalar(&self.values),
-            Kind::Vector => VtuArray::Vector(&self.values),
-            Kind::Tensor => VtuArray::Tensor(dimension, &self.values),
-            Kind::Integer => VtuArray::Integers(self.values.iter().map(|x| *x as i32).collect()),
+            FieldKind::Scalar => VtuArray::Scalar(&self.values),
+            FieldKind::Vector | FieldKind::List => VtuArray::Vector(&self.values),
+            FieldKind::Tensor => VtuArray::Tensor(dimension, &self.values),
+            FieldKind::Integer => {
+                VtuArray::Integers(self.values.iter().map(|x| *x as i32).collect())
+            }
         };
         let mut arrays = vec![array(self.name.clone(), whole)];
-        if self.kind == Kind::Tensor {
-            let parts = TENSOR_COMPONENTS[dimension - 1].iter();
+        if self.kind == FieldKind::Tensor {
+            let parts = self.components.iter();
             for (part, values) in parts.zip(self.values.chunks(points)) {
                 let name = format!("{}_{part}", self.name);
                 arrays.push(array(name, VtuArray::Scalar(values)));
@@ -165,13 +147,6 @@ impl Column {
         arrays
     }
 }
-
-/// Components of symmetric tensors by dimension, in the order of [`Field::components`].
-const TENSOR_COMPONENTS: [&[&str]; 3] = [
-    &["xx"],
-    &["xx", "yy", "xy"],
-    &["xx", "yy", "zz", "xy", "yz", "xz"],
-];
 
 /// An array of a VTU file.
 pub(super) struct VtuColumn<'a> {

@@ -2,7 +2,7 @@
 
 use pericles::System;
 use pericles::space::PointCloud;
-use pericles_deck::{Caution, ModelWarning, Remark};
+use pericles_deck::Caution;
 
 use super::assembler::Assembler;
 
@@ -115,12 +115,7 @@ impl Part {
 impl Assembler<'_> {
     /// Warns of a static body with a part that can move as a rigid body until `end` (s), because the loads on it are
     /// not in equilibrium or it has no constraint.
-    pub(super) fn check_supports(
-        &self,
-        system: &System,
-        end: f64,
-        warnings: &mut Vec<ModelWarning>,
-    ) {
+    pub(super) fn check_supports(&self, system: &System, end: f64) {
         let is_static = self.model.time.scheme.is_static();
         let Some(solid) = self.model.body.solid() else {
             return;
@@ -139,7 +134,7 @@ impl Assembler<'_> {
         let unbalanced = parts.iter().filter(|part| part.is_unbalanced).max_by(most);
         if let Some(part) = unbalanced {
             let caution = part.caution(cloud.len(), cloud);
-            warnings.push(Remark::new("time.scheme", caution));
+            self.warn("time.scheme", caution);
         }
         let taken_out = self.model.time.scheme.removes_rigid_modes();
         let loose = parts
@@ -152,7 +147,7 @@ impl Assembler<'_> {
                 of: cloud.len(),
                 place: position(cloud, first.first),
             };
-            warnings.push(Remark::new("time.scheme", caution));
+            self.warn("time.scheme", caution);
         }
     }
 }

@@ -1,10 +1,10 @@
 //! Force operator and material of a body.
 
 use pericles::material::BondMaterial;
-use pericles::observe::{Field, TrackedCrack};
+use pericles::observe::{Field, FieldNeed, TrackedCrack};
 use pericles::operator::{BondBody, CompositeBody, Feature};
 use pericles::space::PointSet;
-use pericles::{Need, PericlesError, PointScalar};
+use pericles::{Need, PericlesError, PointScalar, System};
 use pericles_deck::{
     BuildError, Caution, ContactPairs, Fault, KeyPath, MaterialModel, ModelWarning, PointNumber,
     Remark, Solid, SurfaceBody,
@@ -40,18 +40,13 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         let place = discretisation;
         match &solid.material.model {
-            MaterialModel::Bonds(material) => {
-                self.bond_based_parts(solid, material, place, warnings)
-            }
-            MaterialModel::StateBased(material) => {
-                self.state_based_parts(solid, material, place, warnings)
-            }
+            MaterialModel::Bonds(material) => self.bond_based_parts(solid, material, place),
+            MaterialModel::StateBased(material) => self.state_based_parts(solid, material, place),
             MaterialModel::Correspondence(material) => {
-                self.correspondence_parts(solid, material, place, warnings)
+                self.correspondence_parts(solid, material, place)
             }
         }
     }
@@ -61,7 +56,6 @@ impl Assembler<'_> {
         solid: &Solid,
         material: &BondMaterial,
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         let Discretisation {
             cloud, grids, sets, ..
@@ -70,9 +64,10 @@ impl Assembler<'_> {
             .constants_of(solid, material, cloud)
             .map_err(at_material)?;
         let known = MaterialConstants::Bonds(constants.clone());
-        warnings.extend(self.check_speed(solid, &known));
-        warnings.extend(self.check_classes(material, &constants));
-        warnings.extend(self.check_solid(solid, &known));
+        self.warnings.extend(self.check_speed(solid, &known));
+        self.warnings
+            .extend(self.check_classes(material, &constants));
+        self.warnings.extend(self.check_solid(solid, &known));
         let no_fail = self.unbreakable(solid, sets, cloud)?;
         let stiffness = self.stiffness_of(cloud, sets)?;
         let Composition {
@@ -82,7 +77,7 @@ impl Assembler<'_> {
             density,
             others,
             softening,
-        } = self.materials(solid, (material, &constants), discretisation, warnings)?;
+        } = self.materials(solid, (material, &constants), discretisation)?;
         let body = BondBody {
             cloud,
             material,
@@ -101,15 +96,10 @@ impl Assembler<'_> {
             strengths: &strengths,
         };
         let all = (&materials[..], &interfaces[..]);
-        let (bonds, cracks) =
-            self.bonds(solid, composite, (grids, all), discretisation, warnings)?;
+        let (bonds, cracks) = self.bonds(solid, composite, (grids, all), discretisation)?;
         let rejected = bonds.form.rejection(Feature::Tensors.into());
-        if let (true, Some(reason)) = (self.model.output.wants_tensors(), rejected) {
-            let fields = "the fields Stress, Strain and Equivalent_Stress are";
-            return Err(at_path(
-                self.field_key(Field::is_of_bonds),
-                Fault::NoFields { fields, reason },
-            ));
+        if let Some(reason) = rejected {
+            self.reject_needing(FieldNeed::Bonds, reason)?;
         }
         Ok(BodyParts {
             bonds,
@@ -128,16 +118,16 @@ impl Assembler<'_> {
         surface: &Surface,
         discretisation: &Discretisation,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
         self.reject_body_forces()?;
         let operator = self.surface_operator(body, surface, cloud, sets, resources.cache)?;
         let neighbours = operator.directed_bonds() as f64 / cloud.len() as f64;
         for caution in surface.cautions(body.material.horizon, neighbours) {
-            warnings.push(Remark::new("material.horizon", Caution::Surface(caution)));
+            self.warn("material.horizon", Caution::Surface(caution));
         }
-        warnings.extend(mesh_dependence(&body.material.power(), surface));
+        self.warnings
+            .extend(mesh_dependence(&body.material.power(), surface));
         Ok(BodyParts {
             bonds: AssembledForce {
                 operator,
@@ -152,54 +142,47 @@ impl Assembler<'_> {
         })
     }
 
-    /// Rejects output of dilatation, plastic strain or temperature for bodies without them.
-    pub(super) fn reject_fields(&self, bonds: &AssembledForce) -> Result<(), BuildError> {
-        let capabilities = bonds.operator.capabilities();
-        let reject = |is_meant, fields, reason| {
-            let fault = Fault::NoFields { fields, reason };
-            Err(at_path(self.field_key(is_meant), fault))
-        };
-        let wants = |field| self.model.output.wants(field);
-        if capabilities.bonds.is_none() && self.model.output.wants_tensors() {
-            return reject(
-                Field::is_of_bonds,
-                "the fields Stress, Strain and Equivalent_Stress are",
-                "only bodies with volume whose forces are sums over single bonds have them",
-            );
-        }
-        if capabilities.dilatation.is_none() && wants(Field::Dilatation) {
-            return reject(
-                |field| field == Field::Dilatation,
-                "the field Dilatation is",
-                "only state-based and correspondence materials (model = \"state-based\" or \"correspondence\") have a dilatation",
-            );
-        }
-        if capabilities.plastic.is_none()
-            && (wants(Field::PlasticStrain) || wants(Field::YieldFlag))
+    /// Rejects output of fields that the body does not have.
+    pub(super) fn reject_fields(&self, system: &System) -> Result<(), BuildError> {
+        for need in FieldNeed::ALL
+            .into_iter()
+            .filter(|need| !need.is_met(system))
         {
-            return reject(
-                |field| matches!(field, Field::PlasticStrain | Field::YieldFlag),
-                "the fields Plastic_Strain and Yield_Flag are",
-                "only materials with a `yield_stress` have a plastic strain",
-            );
-        }
-        let conducts =
-            (self.model.thermal.as_ref()).is_some_and(|thermal| thermal.conduction.is_some());
-        if !conducts && wants(Field::HeatFlux) {
-            return reject(
-                |field| field == Field::HeatFlux,
-                "the field Heat_Flux is",
-                "only bodies with heat conduction have a heat flux; set `conductivity` and `specific_heat` in [thermal]",
-            );
-        }
-        if !conducts && capabilities.thermal.is_none() && wants(Field::Temperature) {
-            return reject(
-                |field| field == Field::Temperature,
-                "the field Temperature is",
-                "only bodies with thermal expansion have a temperature; add [thermal]",
-            );
+            let reason = match need {
+                FieldNeed::Bonds => {
+                    "only bodies with volume whose forces are sums over single bonds have them"
+                }
+                FieldNeed::Dilatation => {
+                    "only state-based and correspondence materials (model = \"state-based\" or \"correspondence\") have a dilatation"
+                }
+                FieldNeed::Plasticity => {
+                    "only materials with a `yield_stress` have a plastic strain"
+                }
+                FieldNeed::Conduction => {
+                    "only bodies with heat conduction have a heat flux; set `conductivity` and `specific_heat` in [thermal]"
+                }
+                FieldNeed::Temperature => {
+                    "only bodies with thermal expansion have a temperature; add [thermal]"
+                }
+            };
+            self.reject_needing(need, reason)?;
         }
         Ok(())
+    }
+
+    /// Rejects output of fields that need a property of the body.
+    fn reject_needing(&self, need: FieldNeed, reason: &'static str) -> Result<(), BuildError> {
+        let fields = self.model.output.needing(need);
+        let names: Vec<&str> = fields.iter().map(|field| field.name()).collect();
+        let fields = match &names[..] {
+            [] => return Ok(()),
+            [name] => format!("the field {name} is"),
+            [first @ .., last] => format!("the fields {} and {last} are", first.join(", ")),
+        };
+        Err(at_path(
+            self.field_key(need),
+            Fault::NoFields { fields, reason },
+        ))
     }
 
     /// Rejects `cells = true` for a body without cells.
@@ -230,8 +213,9 @@ impl Assembler<'_> {
         Ok(())
     }
 
-    /// Returns the key that requests the fields.
-    fn field_key(&self, is_meant: fn(Field) -> bool) -> KeyPath {
+    /// Returns the key that requests fields which need a property of the body.
+    fn field_key(&self, need: FieldNeed) -> KeyPath {
+        let is_meant = |field: Field| field.need() == Some(need);
         let output = &self.model.output;
         let named = &output.fields.names.fields;
         let all = KeyPath::from("output.fields.names");
@@ -265,7 +249,7 @@ impl Assembler<'_> {
         is_graded: bool,
     ) -> Result<ForceForm, BuildError> {
         let scheme = &self.model.time.scheme;
-        let needs_bonds = self.model.output.wants_tensors()
+        let needs_bonds = !self.model.output.needing(FieldNeed::Bonds).is_empty()
             || self.expands()
             || self.touches_without_bonds()
             || composite.body.cloud.domain().is_divided()
@@ -295,7 +279,6 @@ impl Assembler<'_> {
         composite: CompositeBody<'_>,
         (grids, (materials, interfaces)): (&Grids, (&[BondMaterial], &[Between])),
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<(AssembledForce, Vec<TrackedCrack>), BuildError> {
         let surfaces = self.cracks;
         let composite = CompositeBody {
@@ -318,7 +301,7 @@ impl Assembler<'_> {
         } else {
             pericles_waves::assemble(&composite, form).map_err(at_material)?
         };
-        let tracked = self.tracked_cracks(&assembled.cuts, discretisation, warnings);
+        let tracked = self.tracked_cracks(&assembled.cuts, discretisation);
         Ok((assembled, tracked))
     }
 }

@@ -162,7 +162,6 @@ impl Assembler<'_> {
         start: &State,
         steps: &Steps,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<(Side, EndReport)>, BuildError> {
         /// Initial fields above this fraction at a boundary lead to a warning.
         const NOTABLE_FIELD: f64 = 1e-10;
@@ -179,18 +178,19 @@ impl Assembler<'_> {
             };
             step.check(&stencil).map_err(reject)?;
             if let Some(solid) = self.model.body.solid() {
-                warnings.extend(self.check_reach(solid, &stencil, system.cloud()));
+                self.warnings
+                    .extend(self.check_reach(solid, &stencil, system.cloud()));
             }
             let neglected = end.layer.neglected;
             if neglected > NOTABLE_FIELD {
                 let side = end.layer.side.name();
-                warnings.push(Remark::new(
+                self.warn(
                     &path,
                     Caution::FieldAtEnd {
                         side,
                         share: neglected,
                     },
-                ));
+                );
             }
             let count = steps.count as usize;
             let own = stencil.reach() * if end.beyond.is_some() { 3 } else { 1 };
@@ -215,16 +215,13 @@ impl Assembler<'_> {
                     tolerance,
                     residual,
                 };
-                warnings.push(Remark::new(path.key("history"), caution));
+                self.warn(path.key("history"), caution);
                 end.plan.form = Some(HistoryForm::Blocked);
                 made = make(end.plan);
             }
             let (history, report) = made.map_err(reject)?;
             if let Some(growth) = report.growth {
-                warnings.push(Remark::new(
-                    path.key("method"),
-                    Caution::HistoricalKernels { growth },
-                ));
+                self.warn(path.key("method"), Caution::HistoricalKernels { growth });
             }
             reports.push((end.layer.side, report));
             if end.scheme == LatticeScheme::Midpoint {

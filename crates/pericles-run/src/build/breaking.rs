@@ -3,7 +3,7 @@
 use pericles::operator::PointSubset;
 use pericles::time::State;
 use pericles::{PericlesError, System};
-use pericles_deck::{BuildError, Caution, Fault, KeyPath, ModelWarning, Remark};
+use pericles_deck::{BuildError, Caution, Fault, KeyPath};
 
 use super::assembler::Assembler;
 use super::constants::MaterialConstants;
@@ -33,7 +33,6 @@ impl Assembler<'_> {
         &self,
         system: &System,
         state: &State,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<(), BuildError> {
         let mut initial = self.model.initial.iter();
         let Some(k) = initial.position(|initial| initial.file.is_some()) else {
@@ -44,7 +43,7 @@ impl Assembler<'_> {
         }
         let path = KeyPath::from("initial").index(k).key("file");
         if system.operator().capabilities().path_dependent {
-            warnings.push(Remark::new(&path, Caution::NoHistory));
+            self.warn(&path, Caution::NoHistory);
         }
         match torn(system, &state.u) {
             0 => Ok(()),
@@ -65,7 +64,6 @@ impl Assembler<'_> {
         state: &State,
         constants: Option<&MaterialConstants>,
         steps: &Steps,
-        warnings: &mut Vec<ModelWarning>,
     ) {
         let dynamic = !self.model.time.scheme.is_static();
         let (Some(solid), Some(constants)) = (self.model.body.solid(), constants) else {
@@ -82,14 +80,14 @@ impl Assembler<'_> {
         let speed = largest_relative_speed(system, &state.v);
         if speed > limit {
             let caution = fast("initial velocity", speed, limit, system.dimension());
-            warnings.push(Remark::new(first("initial"), caution));
+            self.warn(first("initial"), caution);
         }
         for (k, speed) in prescribed_speeds(system, steps).into_iter().enumerate() {
             let points = system.motions()[k].points.len();
             let everywhere = system.domain().all(points == system.points());
             if speed > limit && !everywhere {
                 let caution = fast("prescribed motion", speed, limit, system.dimension());
-                warnings.push(Remark::new(KeyPath::from("constraint").index(k), caution));
+                self.warn(KeyPath::from("constraint").index(k), caution);
             }
         }
         let mut u: Vec<f64> = state.u.clone();
@@ -109,7 +107,7 @@ impl Assembler<'_> {
                 of: system.domain().whole_points(),
                 dt: steps.dt,
             };
-            warnings.push(Remark::new(&path, caution));
+            self.warn(&path, caution);
         }
     }
 }

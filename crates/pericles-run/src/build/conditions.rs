@@ -8,10 +8,7 @@ use pericles::observe::Probe as PointProbe;
 use pericles::space::PointCloud;
 use pericles::time::State;
 use pericles::{PericlesError, System};
-use pericles_deck::{
-    BuildError, Caution, Fault, KeyPath, ModelWarning, ProbePlace, RandomVelocity, Remark,
-    TimeHistory,
-};
+use pericles_deck::{BuildError, Caution, Fault, KeyPath, ProbePlace, RandomVelocity, TimeHistory};
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
@@ -212,7 +209,6 @@ impl Assembler<'_> {
     pub(super) fn point_probes(
         &self,
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<PointProbe>, BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
         let mut probes = Vec::new();
@@ -227,7 +223,7 @@ impl Assembler<'_> {
                     if distance > 0.5 * diagonal * (1.0 + 1e-9) {
                         let name = probe.name.clone();
                         let caution = Caution::ProbeOutside { name, distance };
-                        warnings.push(Remark::new(path.key("at"), caution));
+                        self.warn(path.key("at"), caution);
                     }
                     nearest.into_iter().collect()
                 }

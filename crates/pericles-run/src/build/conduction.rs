@@ -9,8 +9,7 @@ use pericles::units::precise;
 use pericles::{PointScalar, System};
 use pericles_deck::{
     Body, BuildError, Caution, Component, ConductionScheme, ConductivityMean, Fault, KeyPath,
-    MaterialModel, ModelWarning, Property, Remark, Solid, SolidShape, Thermal, ThermalAmplitude,
-    ThermalCondition,
+    MaterialModel, Property, Solid, SolidShape, Thermal, ThermalAmplitude, ThermalCondition,
 };
 use pericles_heat::{
     Condition, DiffusingField, DiffusionBody, Exchange, FieldOptions, Interface, Kind, Problem,
@@ -38,7 +37,6 @@ impl Assembler<'_> {
         parts: &BodyParts,
         discretisation: &Discretisation,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Option<DiffusingField>, BuildError> {
         let (Some(thermal), Body::Solid(solid)) = (&self.model.thermal, &self.model.body) else {
             return Ok(None);
@@ -81,7 +79,7 @@ impl Assembler<'_> {
             .enumerate()
             .map(|(k, condition)| {
                 let path = KeyPath::from("thermal").key("condition").index(k);
-                self.thermal_condition(&path, (thermal, condition), discretisation, warnings)
+                self.thermal_condition(&path, (thermal, condition), discretisation)
             });
         let conditions = conditions.collect::<Result<Vec<_>, _>>()?;
         let is_prescribed = |condition: &&Condition| matches!(condition.kind, Kind::Prescribed(_));
@@ -128,7 +126,7 @@ impl Assembler<'_> {
             }
         };
         let checked = check_radiation(thermal, cloud, &start);
-        warnings.extend(discretisation.agreed(checked)?);
+        self.warnings.extend(discretisation.agreed(checked)?);
         let field = DiffusingField::new(problem, options, 0.0, start);
         field.map(Some).map_err(|error| at("thermal", error))
     }
@@ -193,7 +191,6 @@ impl Assembler<'_> {
         path: &KeyPath,
         (thermal, condition): (&Thermal, &ThermalCondition),
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Condition, BuildError> {
         let cloud = &discretisation.cloud;
         let points = self
@@ -215,8 +212,8 @@ impl Assembler<'_> {
             .iter()
             .map(|&i| cloud.volumes()[i as usize])
             .collect();
-        let mut areas = || -> Result<Vec<f64>, BuildError> {
-            let area = self.heated_area(path, condition, discretisation, &points, warnings)?;
+        let areas = || -> Result<Vec<f64>, BuildError> {
+            let area = self.heated_area(path, condition, discretisation, &points)?;
             let volume = volume_of(cloud, &points);
             let areas = volumes.iter().map(|one| area * one / volume);
             Ok(areas.collect())
@@ -265,7 +262,6 @@ impl Assembler<'_> {
         condition: &ThermalCondition,
         discretisation: &Discretisation,
         points: &[u32],
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<f64, BuildError> {
         let cloud = &*discretisation.cloud;
         let known = condition
@@ -295,7 +291,7 @@ impl Assembler<'_> {
         if !area::is_layer(region)
             && let Some(caution) = heated.caution(axis)
         {
-            warnings.push(Remark::new(path, Caution::LoadedArea(caution)));
+            self.warn(path, Caution::LoadedArea(caution));
         }
         Ok(heated.seen_along(axis))
     }

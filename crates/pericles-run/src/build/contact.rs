@@ -41,14 +41,13 @@ impl Assembler<'_> {
         (discretisation, state): (&Discretisation, &State),
         constants: AllConstants<'_>,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<ContactFacts, BuildError> {
         let Some(solid) = self.model.body.solid() else {
             return Ok(ContactFacts::default());
         };
         let pieces = solid.shape.pieces().len();
         if self.model.contact.is_none() && pieces > 1 {
-            warnings.push(Remark::new("body.piece", Caution::NoContact { pieces }));
+            self.warn("body.piece", Caution::NoContact { pieces });
         }
         if self.model.contact.is_none() && self.model.impactors.is_empty() {
             return Ok(ContactFacts::default());
@@ -62,16 +61,16 @@ impl Assembler<'_> {
                 .and_then(|points| system.add_interaction(Box::new(points)))
                 .map_err(|error| at("contact", error))?;
             if law.friction.is_some() && cloud.dimension() > 1 {
-                warnings.push(Remark::new(
+                self.warn(
                     "contact.friction",
                     Caution::Contact(ContactCaution::FrictionTorque),
-                ));
+                );
             }
         }
         for (k, impactor) in self.model.impactors.iter().enumerate() {
             let path = KeyPath::from("impactor").index(k);
-            let (shape, pose) = self.impactor_shape(&path, impactor, resources, warnings)?;
-            warnings.extend(small_impactor(&path, &shape, cloud));
+            let (shape, pose) = self.impactor_shape(&path, impactor, resources)?;
+            self.warnings.extend(small_impactor(&path, &shape, cloud));
             let motion = impactor_motion((&path, impactor), self.model.time.end)?;
             let one = Impactor::new(
                 impactor.name.clone(),
@@ -92,7 +91,7 @@ impl Assembler<'_> {
             frequency: system.single_contact_frequency(density),
             speed: self.impact_speed(system, cloud, state),
         };
-        self.check_impact(solid, &contact, facts, constants, warnings);
+        self.check_impact(solid, &contact, facts, constants);
         Ok(facts)
     }
 
@@ -107,8 +106,7 @@ impl Assembler<'_> {
             cloud, grids, sets, ..
         } = discretisation;
         // Warnings about materials were reported when the forces were built.
-        let (of_point, density) =
-            self.points_of_materials(&solid.material, (cloud, sets), &mut Vec::new())?;
+        let (of_point, density) = self.materials_of_points(&solid.material, (cloud, sets))?;
         let young: Vec<f64> = own
             .into_iter()
             .chain(others)
@@ -143,7 +141,6 @@ impl Assembler<'_> {
         path: &KeyPath,
         impactor: &pericles_deck::Impactor,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<(Shape, Pose), BuildError> {
         let turned = impactor
             .rotation
@@ -180,7 +177,7 @@ impl Assembler<'_> {
                 let surface = surface.map_err(|error| wrong(error.to_string()))?;
                 // The triangles of some formats, such as STL, have vertices of their own.
                 let (surface, reversed) = surface.repaired();
-                warnings.extend(reversed.map(|reversed| {
+                self.warnings.extend(reversed.map(|reversed| {
                     let problem = reversed.to_string();
                     Remark::new(key.clone(), Caution::Mesh { problem })
                 }));
@@ -240,7 +237,6 @@ impl Assembler<'_> {
         contact: &Contact,
         facts: ContactFacts,
         (own, _): AllConstants<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) {
         /// Overlap in spacings above which points may pass each other.
         const LARGE: f64 = 0.5;
@@ -264,7 +260,7 @@ impl Assembler<'_> {
                 wave_speed,
                 overlap,
             };
-            warnings.push(Remark::new("contact.stiffness", Caution::Contact(caution)));
+            self.warn("contact.stiffness", Caution::Contact(caution));
         }
     }
 
@@ -275,14 +271,13 @@ impl Assembler<'_> {
         facts: ContactFacts,
         own: Option<&MaterialConstants>,
         spacing: f64,
-        warnings: &mut Vec<ModelWarning>,
     ) {
         if self.model.time.scheme.is_static() {
             return;
         }
         if dt > longest * (1.0 + 1e-9) {
             let caution = ContactCaution::FewContactSteps { dt, longest };
-            warnings.push(Remark::new("time.dt", Caution::Contact(caution)));
+            self.warn("time.dt", Caution::Contact(caution));
         }
         let critical = own.map_or(f64::INFINITY, MaterialConstants::critical_stretch);
         let stretched = facts.speed * dt / spacing;
@@ -291,7 +286,7 @@ impl Assembler<'_> {
                 speed: facts.speed,
                 times: stretched / critical,
             };
-            warnings.push(Remark::new("time.dt", Caution::Contact(caution)));
+            self.warn("time.dt", Caution::Contact(caution));
         }
     }
 }

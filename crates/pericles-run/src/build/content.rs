@@ -12,7 +12,7 @@ use pericles_dispersion::{
     BondLattice, KernelWaves, PhaseErrors, Resolved, space_content, stability, time_content,
 };
 
-use super::assembler::Assembler;
+use super::assembler::{Assembler, Warnings};
 use super::assembly::Assembly;
 use super::rejection::{HORIZON, at, at_path};
 
@@ -65,19 +65,19 @@ impl Assembly {
     /// # Errors
     /// The points of the body do not form a regular grid.
     pub fn interior<'a>(&'a self, model: &'a Model) -> Result<Interior<'a>, BuildError> {
-        Assembler::new(self.with_means(model)).interior(self)
+        interior(self.with_means(model), self)
     }
 
     /// Returns the dispersion of plane waves; `None` for bodies without a grid or with several materials.
     pub fn plane_waves(&self, model: &Model) -> Option<PlaneWaves> {
-        Assembler::new(self.with_means(model)).plane_waves(self)
+        Assembler::new(self.with_means(model), &Warnings::default()).plane_waves(self)
     }
 
     /// Warns of kernels that are less accurate than intended, and of loads, motions and initial values with waves
     /// that the grid does not resolve. Dispersion of the nonlocal model itself leads to no warning. Bodies without a
     /// grid or with several materials are not checked.
     pub fn check_waves(&self, model: &Model) -> Vec<ModelWarning> {
-        Assembler::new(self.with_means(model)).check_waves(self)
+        Assembler::new(self.with_means(model), &Warnings::default()).check_waves(self)
     }
 }
 
@@ -93,46 +93,45 @@ pub struct Interior<'a> {
     pub constants: &'a BondConstants,
 }
 
-impl<'a> Assembler<'a> {
-    fn interior(self, assembly: &'a Assembly) -> Result<Interior<'a>, BuildError> {
-        let Some(solid) = self.model.body.solid() else {
-            return Err(at("body", DispersionError::NoLattice.into()));
+fn interior<'a>(model: &'a Model, assembly: &'a Assembly) -> Result<Interior<'a>, BuildError> {
+    let Some(solid) = model.body.solid() else {
+        return Err(at("body", DispersionError::NoLattice.into()));
+    };
+    let Some((material, constants)) = bonds_of(solid, assembly) else {
+        let fault = Fault::OutOfRange {
+            value: solid.material.model_name().into(),
+            allowed: "allowed: a bond-based model".into(),
         };
-        let Some((material, constants)) = bonds_of(solid, assembly) else {
-            let fault = Fault::OutOfRange {
-                value: solid.material.model_name().into(),
-                allowed: "allowed: a bond-based model".into(),
-            };
-            return Err(at_path("material.model", fault));
-        };
-        let lattice = self.lattice_of(solid, assembly, material, constants);
-        let lattice = lattice.map_err(|error| match error.extension() {
-            Some(DispersionError::NoLattice) => at("body", error),
-            _ => at(HORIZON, error),
-        })?;
-        Ok(Interior {
-            lattice,
-            solid,
-            material,
-            constants,
-        })
-    }
+        return Err(at_path("material.model", fault));
+    };
+    let lattice = lattice_of(solid, assembly, material, constants);
+    let lattice = lattice.map_err(|error| match error.extension() {
+        Some(DispersionError::NoLattice) => at("body", error),
+        _ => at(HORIZON, error),
+    })?;
+    Ok(Interior {
+        lattice,
+        solid,
+        material,
+        constants,
+    })
+}
 
-    fn lattice_of(
-        &self,
-        solid: &Solid,
-        assembly: &Assembly,
-        material: &BondMaterial,
-        constants: &BondConstants,
-    ) -> pericles::Result<BondLattice> {
-        match solid.shape.rectangular() {
-            Some(spacing) => {
-                BondLattice::of_material(spacing, solid.shape.section(), material, constants)
-            }
-            None => BondLattice::of_body(&assembly.cloud, material, constants),
+fn lattice_of(
+    solid: &Solid,
+    assembly: &Assembly,
+    material: &BondMaterial,
+    constants: &BondConstants,
+) -> pericles::Result<BondLattice> {
+    match solid.shape.rectangular() {
+        Some(spacing) => {
+            BondLattice::of_material(spacing, solid.shape.section(), material, constants)
         }
+        None => BondLattice::of_body(&assembly.cloud, material, constants),
     }
+}
 
+impl Assembler<'_> {
     /// Returns the dispersion of plane waves; `None` for bodies without a grid or with several materials.
     fn plane_waves(self, assembly: &Assembly) -> Option<PlaneWaves> {
         let solid = self.model.body.solid()?;
@@ -140,7 +139,7 @@ impl<'a> Assembler<'a> {
         if !self.model.materials.is_empty() {
             return None;
         }
-        let lattice = self.lattice_of(solid, assembly, material, constants).ok()?;
+        let lattice = lattice_of(solid, assembly, material, constants).ok()?;
         let (horizon, end) = (material.horizon, PhaseErrors::new(&lattice).end());
         let kernel = KernelWaves::new(lattice.dimension(), &material.influence, horizon, end);
         let (model_length, grid) = match &kernel {
@@ -158,9 +157,7 @@ impl<'a> Assembler<'a> {
                 },
                 ..material.clone()
             };
-            let constant = self
-                .lattice_of(solid, assembly, &constant, constants)
-                .ok()?;
+            let constant = lattice_of(solid, assembly, &constant, constants).ok()?;
             Some([KernelQuality::of(&lattice), KernelQuality::of(&constant)])
         });
         Some(PlaneWaves {
@@ -274,7 +271,7 @@ impl<'a> Assembler<'a> {
             return Vec::new();
         };
         if material.influence.is_signed(material.horizon) {
-            let lattice = self.lattice_of(solid, assembly, material, constants).ok();
+            let lattice = lattice_of(solid, assembly, material, constants).ok();
             let smallest = lattice.map_or(0.0, |lattice| stability(&lattice).smallest);
             if smallest < 0.0 {
                 cautions.push(Caution::GrowingWaves { smallest });

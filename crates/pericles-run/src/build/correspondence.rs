@@ -1,7 +1,7 @@
 //! Forces of bodies of correspondence materials.
 
 use pericles::operator::Feature;
-use pericles_deck::{BuildError, Correspondence, KeyPath, MaterialModel, ModelWarning, Solid};
+use pericles_deck::{BuildError, Correspondence, KeyPath, MaterialModel, Solid};
 use pericles_solids::correspondence::{
     CorrespondenceBody, CorrespondenceConstants, CorrespondenceMaterial,
 };
@@ -20,7 +20,6 @@ impl Assembler<'_> {
         solid: &Solid,
         own: &Correspondence,
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         let rejection = CorrespondenceBody::rejection;
         self.reject_solid_features(solid, Feature::Correspondence, rejection)?;
@@ -49,7 +48,7 @@ impl Assembler<'_> {
             .collect::<Result<_, BuildError>>()?;
         for ((path, material), constants) in materials.iter().zip(&all) {
             let stretch = constants.solid.limits.stretch;
-            self.check_limit(stretch, &material.solid.failure, path, warnings);
+            self.check_limit(stretch, &material.solid.failure, path);
         }
         let combination = Combination {
             several: &|of_point| CorrespondenceConstants::several(of_point, &all),
@@ -59,7 +58,7 @@ impl Assembler<'_> {
                 a.limits_towards(b, failure, cloud, solid.state)
             },
         };
-        let (classes, density) = self.combined(solid, discretisation, &combination, warnings)?;
+        let (classes, density) = self.combined(solid, discretisation, &combination)?;
         let no_fail = self.union_of(sets, &material.no_fail)?;
         let body = CorrespondenceBody {
             cloud,
@@ -76,14 +75,14 @@ impl Assembler<'_> {
             .of_bonds()
             .unwrap_or_default();
         let bonds = body.operator(form).map_err(at_material)?;
-        let cracks = self.tracked_cracks(&bonds.cuts, discretisation, warnings);
+        let cracks = self.tracked_cracks(&bonds.cuts, discretisation);
         let mut all = all
             .into_iter()
             .map(|own| MaterialConstants::Correspondence(Box::new(own)));
         let constants = all.next();
         if let Some(constants) = &constants {
-            warnings.extend(self.check_speed(solid, constants));
-            warnings.extend(self.check_solid(solid, constants));
+            self.warnings.extend(self.check_speed(solid, constants));
+            self.warnings.extend(self.check_solid(solid, constants));
         }
         Ok(BodyParts {
             constants,

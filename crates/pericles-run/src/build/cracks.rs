@@ -5,7 +5,7 @@ use std::path::Path;
 use pericles::family::{BondCut, Crack, EndRule};
 use pericles::observe::TrackedCrack;
 use pericles::space::PointCloud;
-use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning, Remark};
+use pericles_deck::{BuildError, Fault, KeyPath};
 
 use super::assembler::Assembler;
 use super::discretisation::{Discretisation, Sets};
@@ -69,7 +69,6 @@ impl Assembler<'_> {
         &self,
         cuts: &[BondCut],
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Vec<TrackedCrack> {
         let mut tracked = Vec::new();
         for (k, ((surface, _), cut)) in self.cracks.iter().zip(cuts).enumerate() {
@@ -79,7 +78,7 @@ impl Assembler<'_> {
             }
             if cut.bonds == 0 {
                 let caution = Self::useless_crack(surface, &discretisation.cloud);
-                warnings.push(Remark::new(KeyPath::from("crack").index(k), caution));
+                self.warn(KeyPath::from("crack").index(k), caution);
             }
             tracked.push(TrackedCrack {
                 crack: surface.clone(),

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use pericles::space::{GradedCloud, PointCloud, PointSet};
 use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Members, Model, Remark, piece_path};
 
-use super::assembler::Assembler;
+use super::assembler::{Assembler, Warnings};
 use super::discretisation::{Discretisation, Grids, Sets};
 use super::mesh_body::Meshes;
 use super::program::Conditions;
@@ -52,8 +52,8 @@ use super::resources::Resources;
 /// A value is out of range, points are invalid or exceed the memory limit, a file cannot be read, or a set is empty.
 pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisation, BuildError> {
     model.check()?;
-    let assembler = Assembler::new(model);
-    let mut warnings = Vec::new();
+    let warnings = Warnings::default();
+    let assembler = Assembler::new(model, &warnings);
     let mut meshes = Meshes::default();
     let (points, surface) = match &model.body {
         Body::Surface(body) => {
@@ -64,9 +64,7 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
             (GradedCloud::of_one_grid(cloud), Some(Arc::new(surface)))
         }
         Body::Solid(solid) => {
-            let points = assembler.own_points(resources, || {
-                assembler.points(solid, resources, &mut warnings)
-            })?;
+            let points = assembler.own_points(resources, || assembler.points(solid, resources))?;
             meshes = points.meshes;
             (points.cloud, None)
         }
@@ -83,7 +81,7 @@ pub fn discretise(model: &Model, resources: &Resources<'_>) -> Result<Discretisa
         surface,
         meshes: Arc::new(meshes),
         conditions: Conditions::default(),
-        warnings,
+        warnings: warnings.taken(),
     })
 }
 

@@ -1,9 +1,7 @@
 //! The exact solution of a model and the points of comparison.
 
 use pericles::space::{PointCloud, PointSet};
-use pericles_deck::{
-    BuildError, Caution, Fault, KnownSolution, ModelWarning, Pulse, Remark, Solid,
-};
+use pericles_deck::{BuildError, Caution, Fault, KnownSolution, Pulse, Solid};
 use pericles_waves::exact::{BarMode, ExactSolution, LineSolution, StretchedBar, TravellingPulse};
 
 use super::assembler::Assembler;
@@ -24,7 +22,6 @@ impl Assembler<'_> {
         &self,
         cloud: &PointCloud,
         constants: Option<&MaterialConstants>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Option<ExactReference>, BuildError> {
         let Some(exact) = self.model.exact else {
             return Ok(None);
@@ -55,7 +52,7 @@ impl Assembler<'_> {
                     centre,
                 };
                 self.check_terms(&line, cloud)?;
-                self.check_period(solid, &line, cloud, exact.window, warnings);
+                self.check_period(solid, &line, cloud, exact.window);
                 (Box::new(line), centre)
             }
             KnownSolution::LocalPulse(Pulse {
@@ -134,7 +131,6 @@ impl Assembler<'_> {
         line: &LineSolution,
         cloud: &PointCloud,
         window: Option<f64>,
-        warnings: &mut Vec<ModelWarning>,
     ) {
         /// Fraction of the amplitude that leads to a warning.
         const NOTABLE: f64 = 1e-6;
@@ -150,7 +146,7 @@ impl Assembler<'_> {
                 estimate,
                 window,
             };
-            warnings.push(Remark::new("body.periodic", caution));
+            self.warn("body.periodic", caution);
         }
     }
 }

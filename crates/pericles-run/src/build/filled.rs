@@ -20,9 +20,8 @@ impl Assembler<'_> {
         solid: &Solid,
         shape: &FilledShape,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<GradedCloud, BuildError> {
-        let enclosure = self.enclosure(shape, resources, warnings)?;
+        let enclosure = self.enclosure(shape, resources)?;
         let bounds = enclosure.bounds();
         let (dimension, spacing) = (shape.dimension, shape.spacing);
         let cells: f64 = (0..dimension)
@@ -37,13 +36,13 @@ impl Assembler<'_> {
             tolerance: 1e-9 * spacing,
         };
         if shape.finer.is_empty() {
-            let cloud = self.filled_cells(shape, &enclosure, &holes, warnings)?;
+            let cloud = self.filled_cells(shape, &enclosure, &holes)?;
             return Ok(GradedCloud::of_one_grid(cloud));
         }
         let enclosed = enclosed.unwrap_or(cells * spacing.powi(dimension as i32));
         let filled = (&enclosure, &holes, enclosed);
         let graded = self.graded_cells(solid, shape, filled, resources)?;
-        warnings.extend(check(
+        self.warnings.extend(check(
             shape,
             (graded.volume, enclosure.enclosed()),
             graded.was_turned,
@@ -57,7 +56,6 @@ impl Assembler<'_> {
         shape: &FilledShape,
         enclosure: &Enclosure,
         holes: &Holes<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<PointCloud, BuildError> {
         let (dimension, spacing) = (shape.dimension, shape.spacing);
         let rejected = |error| self.no_fill(shape, error);
@@ -73,7 +71,8 @@ impl Assembler<'_> {
         };
         if let Some(filled) = &filled {
             let volumes = (filled.volume(), enclosure.enclosed());
-            warnings.extend(check(shape, volumes, filled.was_turned()));
+            self.warnings
+                .extend(check(shape, volumes, filled.was_turned()));
         }
         let nodes: Vec<[usize; 3]> = filled.iter().flat_map(Filled::nodes).collect();
         let lattice = filled.as_ref().map(|filled| *filled.lattice());
@@ -114,7 +113,6 @@ impl Assembler<'_> {
         &self,
         shape: &FilledShape,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Enclosure, BuildError> {
         let rejected = |error| self.no_fill(shape, error);
         match &shape.boundary {
@@ -122,7 +120,7 @@ impl Assembler<'_> {
                 let mesh = self.read_mesh("body.file", &resources.beside(path), resources)?;
                 let surface = TriangleSurface::of_mesh(&mesh, *unit).map_err(rejected)?;
                 let (surface, reversed) = surface.repaired();
-                warnings.extend(reversed.map(|reversed| {
+                self.warnings.extend(reversed.map(|reversed| {
                     let problem = reversed.to_string();
                     Remark::new("body.file", Caution::Mesh { problem })
                 }));

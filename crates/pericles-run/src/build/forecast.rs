@@ -6,7 +6,7 @@ use pericles_heat::HeatError;
 use pericles_statics::{MOST_REPLICATED, StaticsError};
 use serde::Serialize;
 
-use super::assembler::Assembler;
+use super::assembler::{Assembler, Warnings};
 use super::assembly::Assembly;
 use super::points::has_equal_cells;
 use super::rejection::{at, at_path};
@@ -88,7 +88,8 @@ impl Assembly {
     /// # Errors
     /// A model that cannot be divided, with the reason; more processes than parts.
     pub fn forecast(&self, model: &Model, processes: usize) -> Result<Forecast, BuildError> {
-        let assembler = Assembler::new(model);
+        let warnings = Warnings::default();
+        let assembler = Assembler::new(model, &warnings);
         let cloud = &self.cloud;
         if processes > 1
             && let Some((keys, reason)) = assembler.undivided()

@@ -4,8 +4,7 @@ use pericles::System;
 use pericles::boundary::Load as BodyLoad;
 use pericles::space::PointCloud;
 use pericles_deck::{
-    BuildError, Caution, Fault, KeyPath, Load, LoadAmplitude, ModelWarning, Remark, SolidShape,
-    VectorField,
+    BuildError, Caution, Fault, KeyPath, Load, LoadAmplitude, SolidShape, VectorField,
 };
 
 use super::area::{self, LoadedCells};
@@ -35,7 +34,6 @@ impl Assembler<'_> {
         &self,
         system: &mut System,
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Vec<Option<f64>>, BuildError> {
         let cloud = &*discretisation.cloud;
         let mut areas = Vec::new();
@@ -62,7 +60,7 @@ impl Assembler<'_> {
                             Some(area) => area,
                             None => {
                                 let path = path.key("traction");
-                                self.loaded_area(cloud, load, &points, traction, &path, warnings)?
+                                self.loaded_area(cloud, load, &points, traction, &path)?
                             }
                         };
                     (spread(traction, area / volume)?, Some(area))
@@ -93,7 +91,6 @@ impl Assembler<'_> {
         points: &[u32],
         traction: &VectorField,
         path: &KeyPath,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<f64, BuildError> {
         let reject = |reason| at_path(path, Fault::UnknownArea { reason });
         let shape = self.model.body.solid().map(|solid| &solid.shape);
@@ -119,7 +116,7 @@ impl Assembler<'_> {
         if !area::is_layer(region)
             && let Some(caution) = loaded.caution(axis)
         {
-            warnings.push(Remark::new(path, Caution::LoadedArea(caution)));
+            self.warn(path, Caution::LoadedArea(caution));
         }
         Ok(loaded.seen_along(axis))
     }

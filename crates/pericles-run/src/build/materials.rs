@@ -7,11 +7,11 @@ use pericles::material::{
 use pericles::space::PointCloud;
 use pericles_deck::{
     BuildError, Caution, Fault, InterfaceFailure, KeyPath, Material, MaterialModel,
-    MaterialProperty, ModelWarning, Remark, Solid,
+    MaterialProperty, Solid,
 };
 use pericles_waves::ForceForm;
 
-use super::assembler::Assembler;
+use super::assembler::{Assembler, Warnings};
 use super::discretisation::{Discretisation, Sets};
 use super::property::multiply;
 use super::rejection::{at, at_path};
@@ -49,13 +49,12 @@ impl<'m> Assembler<'m> {
         solid: &Solid,
         (bonds, constants): (&BondMaterial, &BondConstants),
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Composition, BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
         let path = KeyPath::from("material");
         let checked = checked_key(&bonds.fracture, &path);
-        self.check_stretch(constants.critical_stretch, checked, warnings);
-        self.check_stiffness(solid, constants, &path, warnings);
+        self.check_stretch(constants.critical_stretch, checked);
+        self.check_stiffness(solid, constants, &path);
         let own = &solid.material;
         let given = (own.tensile_strength, own.strength_surface.as_ref());
         let mut softening =
@@ -72,15 +71,14 @@ impl<'m> Assembler<'m> {
                 .constants_of(solid, own, cloud)
                 .map_err(|error| at_path(&path, error.into()))?;
             let checked = checked_key(&own.fracture, &path);
-            self.check_stretch(own_constants.critical_stretch, checked, warnings);
-            self.check_stiffness(solid, &own_constants, &path, warnings);
+            self.check_stretch(own_constants.critical_stretch, checked);
+            self.check_stiffness(solid, &own_constants, &path);
             let pair = (own, &own_constants);
             let given = (other.tensile_strength, other.strength_surface.as_ref());
             softening.push(self.softening_of(solid, pair, given, cloud, &path)?);
             all.push(own_constants);
         }
-        let (of_point, density) =
-            self.points_of_materials(&solid.material, (cloud, sets), warnings)?;
+        let (of_point, density) = self.points_of_materials(&solid.material, (cloud, sets))?;
         let mut interfaces = Vec::new();
         let strengths = self.strengths(solid, cloud)?;
         // A single material with scattered strength is one class.
@@ -101,7 +99,7 @@ impl<'m> Assembler<'m> {
                     let stretch = classes.pair_critical_stretch(*pair);
                     if interface.fracture.is_some() {
                         self.check_onset_between(between.0, &softening, stretch, &path)?;
-                        self.check_stretch(stretch, path, warnings);
+                        self.check_stretch(stretch, path);
                     }
                     interfaces.push(between);
                 }
@@ -194,12 +192,25 @@ impl<'m> Assembler<'m> {
         found.collect()
     }
 
+    /// As [`Assembler::points_of_materials`], whose warnings the forces report.
+    pub(super) fn materials_of_points(
+        &self,
+        material: &Material,
+        place: (&PointCloud, &Sets),
+    ) -> Result<(Option<Vec<u8>>, PointScalar), BuildError> {
+        let reported = Warnings::default();
+        let assembler = Assembler {
+            warnings: &reported,
+            ..*self
+        };
+        assembler.points_of_materials(material, place)
+    }
+
     /// Returns the material number of every point (`None` if all points of the body have its own material), and the density.
     pub(super) fn points_of_materials(
         &self,
         material: &Material,
         (cloud, sets): (&PointCloud, &Sets),
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<(Option<Vec<u8>>, PointScalar), BuildError> {
         let others = &self.model.materials;
         let known = |name: &str| others.iter().position(|other| other.name == name);
@@ -236,7 +247,7 @@ impl<'m> Assembler<'m> {
                     let caution = Caution::UnusedMaterial {
                         material: name.to_owned(),
                     };
-                    warnings.push(Remark::new(KeyPath::from("materials").key(name), caution));
+                    self.warn(KeyPath::from("materials").key(name), caution);
                 }
                 Some(path) if !has(number.min(255) as u8) => {
                     let material = name.to_owned();
@@ -253,7 +264,7 @@ impl<'m> Assembler<'m> {
             return Ok((None, self.varying_density(uniform)));
         }
         if let Some(solid) = self.model.body.solid() {
-            self.check_layers(solid, cloud, Some(&of_point), warnings);
+            self.check_layers(solid, cloud, Some(&of_point));
         }
         let densities: Vec<f64> = of_point
             .iter()
@@ -353,15 +364,10 @@ impl<'m> Assembler<'m> {
     }
 
     /// Warns of large critical stretches: bonds of real materials break well below a stretch of 20 %.
-    pub(super) fn check_stretch(
-        self,
-        stretch: f64,
-        path: KeyPath,
-        warnings: &mut Vec<ModelWarning>,
-    ) {
+    pub(super) fn check_stretch(self, stretch: f64, path: KeyPath) {
         const LARGE: f64 = 0.2;
         if stretch.is_finite() && stretch > LARGE {
-            warnings.push(Remark::new(path, Caution::LargeStretch { stretch }));
+            self.warn(path, Caution::LargeStretch { stretch });
         }
     }
 }

@@ -32,7 +32,7 @@ use pericles_deck::{
 };
 use pericles_waves::ForceForm;
 
-use super::assembler::Assembler;
+use super::assembler::{Assembler, Warnings};
 use super::assembly::Assembly;
 use super::rejection::{HORIZON, at_path};
 use super::resources::Resources;
@@ -76,7 +76,7 @@ impl Assembly {
     /// Returns the estimated peak memory of a run, bytes: points with their state, neighbour search, transforms,
     /// histories of absorbing boundaries. Output is not included.
     pub fn memory_estimate(&self, model: &Model) -> u64 {
-        Assembler::new(model).memory_estimate(self)
+        Assembler::new(model, &Warnings::default()).memory_estimate(self)
     }
 }
 

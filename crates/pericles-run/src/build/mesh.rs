@@ -7,7 +7,7 @@
 use std::path::Path;
 
 use pericles::space::{ListedPoints, PointCloud};
-use pericles_deck::{BuildError, Caution, Fault, KeyPath, MeshFile, ModelWarning, Remark, Solid};
+use pericles_deck::{BuildError, Caution, Fault, KeyPath, MeshFile, Solid};
 use pericles_mesh::{MeshPoints, PointOptions, Problem, RawMesh};
 
 use super::assembler::Assembler;
@@ -22,7 +22,6 @@ impl Assembler<'_> {
         solid: &Solid,
         file: &MeshFile,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<(PointCloud, MeshBody), BuildError> {
         let path = resources.beside(&file.path);
         let mesh = self.read_mesh("body.file", &path, resources)?;
@@ -66,9 +65,10 @@ impl Assembler<'_> {
         let sizes = body.points.check_sizes(solid.material.horizon());
         for problem in body.points.warnings.iter().chain(&sizes) {
             let problem = problem.to_string();
-            warnings.push(Remark::new("body.file", Caution::Mesh { problem }));
+            self.warn("body.file", Caution::Mesh { problem });
         }
-        warnings.extend(self.check_listed_points(&listed, &cloud));
+        self.warnings
+            .extend(self.check_listed_points(&listed, &cloud));
         Ok((cloud, body))
     }
 

@@ -51,6 +51,7 @@ mod scheme;
 mod sense;
 mod softening;
 mod solids;
+mod stages;
 mod state_based;
 mod statics;
 mod step;

@@ -2,9 +2,9 @@
 
 use pericles::family::pairs_within;
 use pericles::space::{GradedCloud, Lattice, ListedPoints, Point, PointCloud};
-use pericles_deck::{BuildError, Fault, KeyPath, ModelWarning, Piece, Solid, piece_path};
+use pericles_deck::{BuildError, Fault, KeyPath, Piece, Solid, piece_path};
 
-use super::assembler::Assembler;
+use super::assembler::{Assembler, Warnings};
 use super::mesh_body::{MeshBody, Meshes, Placement};
 use super::points::BodyPoints;
 use super::rejection::{at, at_path};
@@ -35,7 +35,6 @@ impl Assembler<'_> {
         solid: &Solid,
         pieces: &[Piece],
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyPoints, BuildError> {
         let mut placed = Vec::new();
         // Pieces are created whole: the body is divided when they are in place.
@@ -49,11 +48,17 @@ impl Assembler<'_> {
                 shape: piece.shape.clone(),
                 ..solid.clone()
             };
-            let mut found = Vec::new();
-            let made = self
-                .points(&own, &alone, &mut found)
+            let found = Warnings::default();
+            let assembler = Assembler {
+                warnings: &found,
+                ..*self
+            };
+            let made = assembler
+                .points(&own, &alone)
                 .map_err(|error| error.moved(&body, &path))?;
-            warnings.extend(found.into_iter().map(|one| one.moved(&body, &path)));
+            let found = found.taken().into_iter();
+            self.warnings
+                .extend(found.map(|one| one.moved(&body, &path)));
             placed.push(place(piece, made));
         }
         let joined = match on_common_lattice(&placed, pieces)? {

@@ -35,20 +35,19 @@ impl Assembler<'_> {
         &self,
         solid: &Solid,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyPoints, BuildError> {
         let mut meshes = Meshes::default();
         let cloud = match &solid.shape {
             SolidShape::Pieces(pieces) => {
-                return self.piece_points(solid, pieces, resources, warnings);
+                return self.piece_points(solid, pieces, resources);
             }
             SolidShape::Points(file) => self
-                .listed_points(solid, file, resources, warnings)
+                .listed_points(solid, file, resources)
                 .map(GradedCloud::of_one_grid),
-            SolidShape::Lattice(lattice) => self.grid_points(solid, lattice, resources, warnings),
-            SolidShape::Filled(shape) => self.filled_points(solid, shape, resources, warnings),
+            SolidShape::Lattice(lattice) => self.grid_points(solid, lattice, resources),
+            SolidShape::Filled(shape) => self.filled_points(solid, shape, resources),
             SolidShape::Mesh(file) => {
-                let made = self.mesh_points(solid, file, resources, warnings);
+                let made = self.mesh_points(solid, file, resources);
                 made.map(|(cloud, body)| {
                     meshes.all.push(body);
                     GradedCloud::of_one_grid(cloud)
@@ -59,10 +58,7 @@ impl Assembler<'_> {
         const ATOMS: f64 = 1e-10;
         let spacing = cloud.cloud.spacing();
         if spacing < ATOMS {
-            warnings.push(Remark::new(
-                "body.spacing",
-                Caution::TinySpacing { spacing },
-            ));
+            self.warn("body.spacing", Caution::TinySpacing { spacing });
         }
         Ok(BodyPoints { cloud, meshes })
     }
@@ -72,7 +68,6 @@ impl Assembler<'_> {
         solid: &Solid,
         file: &PointsFile,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<PointCloud, BuildError> {
         /// Larger factors between volumes and spacing indicate a wrong unit.
         const OFF: f64 = 2.0;
@@ -90,7 +85,8 @@ impl Assembler<'_> {
         let is_used = solid.material.volume_correction() != VolumeCorrection::None;
         if !is_used || (1.0 / OFF..=OFF).contains(&(found / given)) {
             self.check_listed(solid, &cloud, resources)?;
-            warnings.extend(self.check_listed_points(&listed, &cloud));
+            self.warnings
+                .extend(self.check_listed_points(&listed, &cloud));
             return Ok(cloud);
         }
         let section = ["area", "thickness"].get(file.dimension - 1).copied();
@@ -159,7 +155,6 @@ impl Assembler<'_> {
         solid: &Solid,
         lattice: &Lattice,
         resources: &Resources<'_>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<GradedCloud, BuildError> {
         let graded = GradedGrid {
             grid: lattice.grid.clone(),
@@ -167,7 +162,7 @@ impl Assembler<'_> {
         };
         let gauss = lattice.quadrature == Quadrature::Gauss;
         self.check_grid(solid, &graded, if gauss { 2.0 } else { 1.0 }, resources)?;
-        warnings.extend(self.check_holes(lattice, &graded));
+        self.warnings.extend(self.check_holes(lattice, &graded));
         let grid = &graded.grid;
         let points = match (&grid.shape, lattice.quadrature) {
             _ if has_equal_cells(lattice) => self.lattice_points(lattice, resources),

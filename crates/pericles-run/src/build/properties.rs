@@ -62,8 +62,7 @@ impl<'m> Assembler<'m> {
             return Ok(None);
         }
         let (cloud, sets) = (&*discretisation.cloud, &discretisation.sets);
-        let (of_point, _) =
-            self.points_of_materials(&solid.material, (cloud, sets), &mut Vec::new())?;
+        let (of_point, _) = self.materials_of_points(&solid.material, (cloud, sets))?;
         let of_point = of_point.unwrap_or_else(|| vec![0; cloud.len()]);
         let is_single = self.model.materials.is_empty();
         let mut model = self.model.clone();
@@ -173,7 +172,7 @@ impl<'m> Assembler<'m> {
     ) -> Result<PointScalar, BuildError> {
         let place = (&*discretisation.cloud, &discretisation.sets);
         // Assignments have been checked before.
-        let (of_point, _) = self.points_of_materials(&solid.material, place, &mut Vec::new())?;
+        let (of_point, _) = self.materials_of_points(&solid.material, place)?;
         let number = |one: &OfMaterial<'_>| Some(one.factor * one.property.number()?);
         let numbers: Option<Vec<f64>> = all.iter().map(number).collect();
         let Some(numbers) = numbers else {

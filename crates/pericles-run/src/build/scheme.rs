@@ -7,10 +7,7 @@ use pericles::time::{
     RelaxationOptions, Respa, RungeKutta, Tableau, VelocityVerlet,
 };
 use pericles::{PericlesError, System};
-use pericles_deck::{
-    BuildError, Caution, Fault, FineRegion, FineStep, Interface, KeyPath, ModelWarning, Remark,
-    Scheme,
-};
+use pericles_deck::{BuildError, Caution, Fault, FineRegion, FineStep, Interface, KeyPath, Scheme};
 use pericles_heat::FixedBody;
 use pericles_waves::Trigonometric;
 
@@ -201,17 +198,12 @@ impl Assembler<'_> {
     }
 
     /// Adds warnings about a multirate scheme.
-    pub(super) fn check_two_steps(
-        &self,
-        integrator: &dyn Integrator,
-        steps: &Steps,
-        warnings: &mut Vec<ModelWarning>,
-    ) {
+    pub(super) fn check_two_steps(&self, integrator: &dyn Integrator, steps: &Steps) {
         let Some(report) = integrator.refinement() else {
             return;
         };
         if report.ratio == 1 {
-            warnings.push(Remark::new("time.ratio", Caution::EqualSteps));
+            self.warn("time.ratio", Caution::EqualSteps);
         }
         let interface = match &self.model.time.scheme {
             Scheme::MultiTimeStep3 { interface, .. } | Scheme::MultiTimeStep4 { interface, .. } => {
@@ -231,7 +223,7 @@ impl Assembler<'_> {
                 omega_dt,
                 quiet: QUIET,
             };
-            warnings.push(Remark::new("time.predictor", caution));
+            self.warn("time.predictor", caution);
         }
     }
 }

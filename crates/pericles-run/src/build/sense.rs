@@ -15,13 +15,8 @@ use super::rejection::HORIZON;
 
 impl Assembler<'_> {
     /// Warns of loads on constrained points, and of disconnected bodies.
-    pub(super) fn check_conditions(
-        &self,
-        system: &System,
-        cloud: &Arc<PointCloud>,
-        warnings: &mut Vec<ModelWarning>,
-    ) {
-        self.check_held_loads(system, warnings);
+    pub(super) fn check_conditions(&self, system: &System, cloud: &Arc<PointCloud>) {
+        self.check_held_loads(system);
         let Some(solid) = self.model.body.solid() else {
             return;
         };
@@ -30,7 +25,7 @@ impl Assembler<'_> {
         }
         // Constraints of static bodies are checked with their loads.
         if !self.model.time.scheme.is_static() {
-            self.check_pieces(solid, cloud, warnings);
+            self.check_pieces(solid, cloud);
         }
     }
 
@@ -51,13 +46,7 @@ impl Assembler<'_> {
 
     /// Warns of large stiffness errors of the body. Listed points are not checked, because they have no regular
     /// interior.
-    pub(super) fn check_stiffness(
-        &self,
-        solid: &Solid,
-        constants: &BondConstants,
-        path: &KeyPath,
-        warnings: &mut Vec<ModelWarning>,
-    ) {
+    pub(super) fn check_stiffness(&self, solid: &Solid, constants: &BondConstants, path: &KeyPath) {
         /// Common horizons and influence functions are within 6 %.
         const BULK: f64 = 0.1;
         /// With a horizon of two spacings the shear stiffness is one third too small.
@@ -68,13 +57,13 @@ impl Assembler<'_> {
         let error = constants.stiffness_error;
         if error.abs() > BULK {
             let caution = Caution::StiffnessError { error };
-            warnings.push(Remark::new(path.key("modulus"), caution));
+            self.warn(path.key("modulus"), caution);
         }
         // Relative to the actual bulk stiffness of the body.
         let error = (1.0 + constants.shear_error) / (1.0 + error) - 1.0;
         if error < -SHEAR {
             let caution = Caution::ShearStiffness { error };
-            warnings.push(Remark::new(HORIZON, caution));
+            self.warn(HORIZON, caution);
         }
     }
 
@@ -116,7 +105,7 @@ impl Assembler<'_> {
         }
     }
 
-    fn check_held_loads(&self, system: &System, warnings: &mut Vec<ModelWarning>) {
+    fn check_held_loads(&self, system: &System) {
         // The constrained axes of each point, one bit per axis.
         let mut held = vec![0u8; system.points()];
         for motion in system.motions() {
@@ -140,19 +129,14 @@ impl Assembler<'_> {
             // Sets may share corner points.
             if 2 * held > points {
                 let caution = Caution::LoadOnHeld { held, points };
-                warnings.push(Remark::new(KeyPath::from("load").index(k), caution));
+                self.warn(KeyPath::from("load").index(k), caution);
             }
         }
     }
 
     /// Warns of bodies that are disconnected at the start. Only bodies with pre-cracks, holes or listed points are
     /// checked, up to a maximum size.
-    fn check_pieces(
-        &self,
-        solid: &Solid,
-        cloud: &Arc<PointCloud>,
-        warnings: &mut Vec<ModelWarning>,
-    ) {
+    fn check_pieces(&self, solid: &Solid, cloud: &Arc<PointCloud>) {
         /// Maximum number of points: the neighbour search takes as long as several steps of the run.
         const MOST: usize = 50_000;
         let holes = &solid.shape.holes();
@@ -181,7 +165,7 @@ impl Assembler<'_> {
                 points: sizes[first],
                 place: place(cloud, first),
             };
-            warnings.push(Remark::new("body", caution));
+            self.warn("body", caution);
         }
     }
 

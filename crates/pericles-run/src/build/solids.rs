@@ -4,8 +4,7 @@ use pericles::material::{BondFailure, BondLimits, Materials};
 use pericles::operator::{Feature, Features};
 use pericles::{PericlesError, PointScalar};
 use pericles_deck::{
-    BuildError, FailureCriterion, Fault, InterfaceFailure, KeyPath, MaterialModel, ModelWarning,
-    Solid,
+    BuildError, FailureCriterion, Fault, InterfaceFailure, KeyPath, MaterialModel, Solid,
 };
 
 use super::assembler::Assembler;
@@ -30,11 +29,9 @@ impl Assembler<'_> {
         solid: &Solid,
         discretisation: &Discretisation,
         combination: &Combination<'_, C>,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<(Option<Materials<C>>, PointScalar), BuildError> {
         let Discretisation { cloud, sets, .. } = discretisation;
-        let (of_point, density) =
-            self.points_of_materials(&solid.material, (cloud, sets), warnings)?;
+        let (of_point, density) = self.points_of_materials(&solid.material, (cloud, sets))?;
         let mut materials = match of_point {
             None => None,
             Some(of_point) => {
@@ -133,18 +130,12 @@ impl Assembler<'_> {
     }
 
     /// Warns of a large critical stretch of a material.
-    pub(super) fn check_limit(
-        &self,
-        stretch: f64,
-        failure: &BondFailure,
-        path: &KeyPath,
-        warnings: &mut Vec<ModelWarning>,
-    ) {
+    pub(super) fn check_limit(&self, stretch: f64, failure: &BondFailure, path: &KeyPath) {
         let key = match failure {
             BondFailure::Unbreakable | BondFailure::ByCriterion => return,
             BondFailure::CriticalStretch(_) => "critical_stretch",
             BondFailure::Stretch { .. } | BondFailure::BondEnergy { .. } => "fracture_energy",
         };
-        self.check_stretch(stretch, path.key(key), warnings);
+        self.check_stretch(stretch, path.key(key));
     }
 }

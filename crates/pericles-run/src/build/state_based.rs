@@ -37,7 +37,6 @@ impl Assembler<'_> {
         solid: &Solid,
         state_based: &StateBased,
         discretisation: &Discretisation,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<BodyParts, BuildError> {
         self.reject_solid_features(solid, Feature::StateBased, LinearSolidBody::rejection)?;
         let Discretisation { cloud, sets, .. } = discretisation;
@@ -58,7 +57,7 @@ impl Assembler<'_> {
                 _ => at_path(path, error.into()),
             })?;
             let stretch = constants.limits.stretch;
-            self.check_limit(stretch, &model.solid.failure, path, warnings);
+            self.check_limit(stretch, &model.solid.failure, path);
             all.push(constants);
         }
         let constants = all[0].clone();
@@ -70,7 +69,7 @@ impl Assembler<'_> {
                 a.limits_towards(b, failure, cloud, solid.state)
             },
         };
-        let (classes, density) = self.combined(solid, discretisation, &combination, warnings)?;
+        let (classes, density) = self.combined(solid, discretisation, &combination)?;
         // Without assignments all points have the first material.
         let assigned = classes.as_ref().map_or(1, |classes| classes.all().len());
         let laws = own[..assigned].iter();
@@ -109,18 +108,19 @@ impl Assembler<'_> {
             }
         };
         let bonds = bonds.map_err(at_material)?;
-        let cracks = self.tracked_cracks(&bonds.cuts, discretisation, warnings);
+        let cracks = self.tracked_cracks(&bonds.cuts, discretisation);
         let mut all = all.into_iter().map(MaterialConstants::StateBased);
         let constants = all.next();
         if let Some(constants) = &constants {
-            warnings.extend(self.check_speed(solid, constants));
-            warnings.extend(self.check_solid(solid, constants));
+            self.warnings.extend(self.check_speed(solid, constants));
+            self.warnings.extend(self.check_solid(solid, constants));
         }
         if let (Some(MaterialConstants::StateBased(constants)), None) = (&constants, &classes) {
             let forces = (&*bonds.operator, &constants.elastic);
-            warnings.extend(self.check_thin(solid, cloud, forces));
+            self.warnings.extend(self.check_thin(solid, cloud, forces));
         }
-        warnings.extend(self.check_isotropy(constants.as_ref()));
+        self.warnings
+            .extend(self.check_isotropy(constants.as_ref()));
         Ok(BodyParts {
             constants,
             others: all.collect(),

@@ -4,7 +4,7 @@ use pericles::PericlesError;
 use pericles::System;
 use pericles::time::{HighestFrequency, Integrator, State, highest_frequency};
 use pericles::units::{precise, quantity, significant};
-use pericles_deck::{BuildError, Caution, Fault, ModelWarning, Remark, Scheme, TimeStep};
+use pericles_deck::{BuildError, Caution, Fault, Scheme, TimeStep};
 
 use super::assembler::Assembler;
 use super::rejection::{at, at_path};
@@ -31,7 +31,6 @@ impl Assembler<'_> {
         state: &State,
         integrator: &dyn Integrator,
         (exterior, damped): (f64, f64),
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<Steps, BuildError> {
         let end = self.model.time.end;
         if let TimeStep::Equal(count) = self.model.time.step {
@@ -80,12 +79,12 @@ impl Assembler<'_> {
             }
             TimeStep::Fixed(given) => {
                 let count = self.count(end, given)?;
-                let dt = self.dividing(given, end, count, warnings);
+                let dt = self.dividing(given, end, count);
                 if let (Some(limit), Ok(frequency)) = (limit, &frequency) {
                     let stable = frequency.stable_step(limit, 1.0);
                     // The error refers to the value in the deck.
                     let checked = if dt <= stable { dt } else { given };
-                    self.check(checked, limit, frequency, integrator.name(), warnings)?;
+                    self.check(checked, limit, frequency, integrator.name())?;
                     let damped = damped + self.rayleigh_rates().at(limit / stable);
                     self.check_damped(dt, stable, damped)?;
                 }
@@ -105,14 +104,14 @@ impl Assembler<'_> {
     }
 
     /// Returns the given step if it divides `end`, otherwise the next smaller one that does.
-    fn dividing(&self, given: f64, end: f64, count: u64, warnings: &mut Vec<ModelWarning>) -> f64 {
+    fn dividing(&self, given: f64, end: f64, count: u64) -> f64 {
         let ratio = end / given;
         if (ratio - count as f64).abs() <= WHOLE * ratio {
             return given;
         }
         let used = end / count as f64;
         let caution = Caution::ShortenedStep { given, used, count };
-        warnings.push(Remark::new("time.dt", caution));
+        self.warn("time.dt", caution);
         used
     }
 
@@ -141,7 +140,6 @@ impl Assembler<'_> {
         limit: f64,
         frequency: &HighestFrequency,
         scheme: &'static str,
-        warnings: &mut Vec<ModelWarning>,
     ) -> Result<(), BuildError> {
         let stable = frequency.stable_step(limit, 1.0);
         if dt <= stable {
@@ -162,7 +160,7 @@ impl Assembler<'_> {
         } else {
             Caution::UncertainStep { dt, limit: stable }
         };
-        warnings.push(Remark::new("time.dt", caution));
+        self.warn("time.dt", caution);
         Ok(())
     }
 

@@ -40,13 +40,7 @@ impl Assembler<'_> {
     }
 
     /// Warns of layers of another material that bonds bridge.
-    pub(super) fn check_layers(
-        &self,
-        solid: &Solid,
-        cloud: &PointCloud,
-        of_point: Option<&[u8]>,
-        warnings: &mut Vec<ModelWarning>,
-    ) {
+    pub(super) fn check_layers(&self, solid: &Solid, cloud: &PointCloud, of_point: Option<&[u8]>) {
         /// Share of the points of a layer that are bridged.
         const MOST: f64 = 0.5;
         let Some(of_point) = of_point else { return };
@@ -71,10 +65,7 @@ impl Assembler<'_> {
                 let path = assigned.last().map(|(path, _, _)| path.clone());
                 let path = path.unwrap_or_else(|| KeyPath::from("materials").key(name));
                 let material = name.to_owned();
-                warnings.push(Remark::new(
-                    path,
-                    Caution::BridgedLayer { material, horizon },
-                ));
+                self.warn(path, Caution::BridgedLayer { material, horizon });
             }
         }
     }

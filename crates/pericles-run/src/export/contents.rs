@@ -2,7 +2,7 @@
 //! [`PageWriter::block`](pericles_io::viewer::PageWriter::block); arrays of points are in the user's order, vectors
 //! component-major.
 
-use pericles::observe::Field;
+use pericles::observe::{Field, FieldKind};
 use pericles_mesh::results::FieldSpec;
 use serde::Serialize;
 
@@ -181,7 +181,8 @@ pub(super) fn groups(specs: &[FieldSpec], dimension: usize) -> Vec<FieldGroup> {
     for (array, spec) in specs.iter().enumerate() {
         let tensor = Field::ALL.into_iter().find_map(|field| {
             let part = spec.name.strip_prefix(field.name())?.strip_prefix('_')?;
-            let known = field.is_tensor() && field.components(dimension).contains(&part);
+            let known =
+                field.kind() == FieldKind::Tensor && field.components(dimension).contains(&part);
             known.then(|| (field, part.to_owned()))
         });
         if let Some((field, part)) = tensor {
@@ -205,20 +206,18 @@ pub(super) fn groups(specs: &[FieldSpec], dimension: usize) -> Vec<FieldGroup> {
             .find(|field| field.name() == spec.name);
         let components: Vec<String> = match (field, spec.components) {
             (_, 1) => Vec::new(),
-            (Some(field), _) if field.is_vector() => field
-                .components(dimension)
-                .iter()
-                .map(|&name| name.into())
-                .collect(),
+            (Some(field), _) if !field.components(dimension).is_empty() => {
+                let names = field.components(dimension).iter();
+                names.map(|&name| name.into()).collect()
+            }
             (_, several) => (1..=several).map(|k| k.to_string()).collect(),
         };
         let count = components.len().max(1);
         groups.push(FieldGroup {
             name: spec.name.clone(),
             unit: field.map_or("", Field::unit),
-            is_vector: field.is_some_and(|field| {
-                field.is_vector() && field != Field::PrincipalStress && dimension > 1
-            }),
+            is_vector: dimension > 1
+                && field.is_some_and(|field| field.kind() == FieldKind::Vector),
             components,
             width: spec.components.max(1),
             arrays: (0..count).map(|component| (array, component)).collect(),

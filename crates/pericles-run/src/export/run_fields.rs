@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use pericles::observe::Field;
+use pericles::observe::{Field, FieldKind};
 use pericles_deck::{FieldFormat, Model, Precision};
 use pericles_io::observers::{FieldSelection, RecordedFields, ResultFile, ResultFormat};
 use pericles_io::{FieldColumn, FieldData, ResultBody};
@@ -222,7 +222,9 @@ impl SelectedFields {
 /// Returns whether an array of a file has a name, or is a component of the tensor of this name; capitals do not matter.
 fn is_named(array: &str, name: &str) -> bool {
     let (array, name) = (array.to_lowercase(), name.to_lowercase());
-    let mut tensors = Field::ALL.into_iter().filter(|field| field.is_tensor());
+    let mut tensors = Field::ALL
+        .into_iter()
+        .filter(|field| field.kind() == FieldKind::Tensor);
     array == name
         || tensors.any(|tensor| {
             let part = array.strip_prefix(&name);
@@ -234,8 +236,9 @@ fn is_named(array: &str, name: &str) -> bool {
 
 /// Returns whether the components of a field form a vector.
 fn is_vector(spec: &FieldSpec) -> bool {
-    let mut fields = Field::ALL.iter();
-    fields.any(|field| field.is_vector() && field.name() == spec.name)
+    let mut fields = Field::ALL.into_iter();
+    let field = fields.find(|field| field.name() == spec.name);
+    field.is_some_and(|field| matches!(field.kind(), FieldKind::Vector | FieldKind::List))
 }
 
 /// Returns the values of a field in a state, as many as in the first one.

@@ -17,6 +17,7 @@ mod criterion;
 mod dissipation;
 mod ends;
 mod extremes;
+mod facts;
 mod fields;
 mod heat;
 mod inelastic;

@@ -2,7 +2,7 @@
 
 use pericles::{Control, Simulation};
 use pericles_deck::Deck;
-use pericles_run::{Facts, SofteningFacts};
+use pericles_run::SofteningFacts;
 
 use super::{build, parse, rejection};
 
@@ -46,7 +46,7 @@ fn peak(mut run: Simulation, section: f64) -> f64 {
 }
 
 fn facts(text: &str) -> Vec<SofteningFacts> {
-    Facts::of(&parse(text).model, &build(text).assembly).softening
+    SofteningFacts::of(&parse(text).model, &build(text).assembly)
 }
 
 /// Points near the free sides of the block lack bonds, so that its peak stays below the strength of a homogeneous body. The

@@ -2,7 +2,7 @@
 
 use pericles::material::ElasticWaves;
 use pericles::space::PointCloud;
-use pericles_run::RunError;
+use pericles_run::{MaterialConstants, RunError};
 
 use super::front::{groups, slopes, widest_gap};
 use super::record::{Look, Recorded, Symmetry, record};
@@ -37,7 +37,9 @@ pub(super) fn branching(case: &Case<'_>) -> Result<Found, RunError> {
     let peak = speeds.iter().map(|speed| speed.1).reduce(f64::max);
     let arrival = front.iter().find(|look| look.1 >= ARRIVAL);
     let solid = deck(case, &[])?;
-    let solid = solid.model.body.solid().zip(recorded.facts.youngs_modulus);
+    let constants = recorded.constants.as_ref();
+    let young = constants.map(MaterialConstants::young);
+    let solid = solid.model.body.solid().zip(young);
     let waves =
         solid.map(|(solid, young)| ElasticWaves::of(young, solid.material.density(), solid.state));
     let transverse = waves.and_then(|waves| waves.transverse);
@@ -72,7 +74,7 @@ fn foremost(recorded: &Recorded, look: &Look) -> f64 {
 
 /// Largest x at which two neighbouring arms are far enough apart.
 fn branched(recorded: &Recorded, look: &Look) -> Option<f64> {
-    let spacing = recorded.facts.spacing;
+    let spacing = recorded.spacing();
     let first = (NOTCH / spacing).round() as usize;
     let mut columns = vec![Vec::new(); (LENGTH / spacing).round() as usize];
     for &point in &look.crack {
@@ -87,7 +89,7 @@ fn branched(recorded: &Recorded, look: &Look) -> Option<f64> {
 
 /// Number of arms at x (m).
 fn arms(recorded: &Recorded, look: &Look, x: f64) -> usize {
-    let spacing = recorded.facts.spacing;
+    let spacing = recorded.spacing();
     let mut heights: Vec<f64> = look
         .crack
         .iter()

@@ -67,7 +67,7 @@ fn arms_at(recorded: &Recorded, look: &Look, radius: f64) -> Vec<f64> {
         .iter()
         .map(|&point| from_middle(recorded, point))
         .collect();
-    let spacing = recorded.facts.spacing;
+    let spacing = recorded.spacing();
     // A ring one cell diagonal wide contains at least one point of each arm; separate arms have at least three
     // undamaged points between them.
     arms(&points, radius, 1.5 * spacing, 4.0 * spacing)
@@ -76,7 +76,7 @@ fn arms_at(recorded: &Recorded, look: &Look, radius: f64) -> Vec<f64> {
 /// Distance beyond the ends of the pre-crack at which four arms exist at the end of the run.
 fn parted(recorded: &Recorded) -> Option<f64> {
     let last = recorded.looks.last()?;
-    let spacing = recorded.facts.spacing;
+    let spacing = recorded.spacing();
     (0..60)
         .map(|k| f64::from(k) * spacing)
         .find(|beyond| arms_at(recorded, last, HALF + beyond).len() == 4)

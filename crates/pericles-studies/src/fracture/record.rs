@@ -9,7 +9,7 @@ use pericles::observe::{
 use pericles::space::{PointCloud, PointSet};
 use pericles::{Control, Simulation};
 use pericles_io::observers::PictureOf;
-use pericles_run::{Event, Facts, Resources, RunError, build};
+use pericles_run::{Event, MaterialConstants, Resources, RunError, build};
 
 use crate::data::{Case, Found};
 use crate::decks::deck;
@@ -81,7 +81,7 @@ pub(super) struct Look {
 pub(super) struct Recorded {
     pub(super) looks: Vec<Look>,
     pub(super) simulation: Simulation,
-    pub(super) facts: Facts,
+    pub(super) constants: Option<MaterialConstants>,
 }
 
 impl Recorded {
@@ -91,10 +91,18 @@ impl Recorded {
         [x, y]
     }
 
+    /// Spacing of the points, m.
+    pub(super) fn spacing(&self) -> f64 {
+        self.simulation.system().cloud().spacing()
+    }
+
     /// Results of both studies: the critical stretch, the first time at which the crack has grown by more than two
     /// spacings, the largest energy imbalance, broken bonds, and the curves of the front and its speed.
     pub(super) fn found(&self, front: &[(f64, f64)], speeds: &[(f64, f64)]) -> Found {
-        let grown = 2.0 * self.facts.spacing;
+        let constants = self.constants.as_ref();
+        let stretch = constants.map(MaterialConstants::critical_stretch);
+        let stretch = stretch.filter(|stretch| stretch.is_finite());
+        let grown = 2.0 * self.spacing();
         let start = self.looks.iter().find(|look| look.advance > grown);
         let worst = |over: fn(&Look) -> f64| {
             self.looks
@@ -113,7 +121,7 @@ impl Recorded {
         curves
             .into_iter()
             .fold(Found::default(), curve)
-            .value("critical stretch", self.facts.critical_stretch)
+            .value("critical stretch", stretch)
             .value("start", start.map(|look| look.t))
             .value("balance over work", worst(|look| look.energies.work))
             .value(
@@ -133,7 +141,7 @@ pub(super) fn record(
 ) -> Result<Recorded, RunError> {
     let (deck, context) = (deck(case, &[])?, case.context);
     let assembly = build(&deck, &Resources::default())?;
-    let facts = Facts::of_deck(&deck, &assembly);
+    let constants = assembly.constants.clone();
     let recorder = Recorder {
         tracker: CrackTracker::new(&assembly.cloud, assembly.cracks.clone(), THRESHOLD)?,
         symmetry: symmetry(&assembly.cloud),
@@ -167,7 +175,7 @@ pub(super) fn record(
     Ok(Recorded {
         looks,
         simulation,
-        facts,
+        constants,
     })
 }
 

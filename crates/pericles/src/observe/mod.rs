@@ -20,7 +20,7 @@ mod tensors;
 
 pub use crack::{CrackTip, CrackTracker, TrackedCrack};
 pub use energies::{Energies, StartEnergy};
-pub use field::Field;
+pub use field::{Field, FieldKind, FieldNeed};
 pub use fragments::{FragmentCount, Fragments};
 pub use probe::{Probe, ProbeReading};
 pub use schedule::Schedule;
