@@ -50,7 +50,18 @@ pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
         #(#checks)*
     );
     let keys = fields.iter().map(Field::keys);
-    let keys = quote_spanned!(here()=> [#(#keys),*].concat());
+    let groups = fields
+        .iter()
+        .map(|field| field.groups(&quote_spanned!(here()=> word)));
+    let keys = quote_spanned!(here()=>
+        fn keys() -> ::std::vec::Vec<&'static str> {
+            [#(#keys),*].concat()
+        }
+
+        fn groups(word: &str) -> ::std::vec::Vec<crate::declaration::Group> {
+            [#(#groups),*].concat()
+        }
+    );
     let mut code = implementation(&attributes, &target, &keys, &read, &check);
     code.extend(defaults(&input, &attributes, &fields)?);
     Ok(code)
@@ -121,7 +132,7 @@ pub(crate) fn scoped(attributes: &Attributes) -> (TokenStream, TokenStream) {
     }
 }
 
-/// Implements `DeckKeys` by the code of its functions, and from it the other traits of tables.
+/// Implements `DeckKeys` by the code of its functions, of which `keys` are complete, and from it the other traits of tables.
 pub(crate) fn implementation(
     attributes: &Attributes,
     target: &Path,
@@ -156,9 +167,9 @@ pub(crate) fn implementation(
     let (generics, ty) = scoped(attributes);
     quote_spanned!(here()=>
         impl crate::declaration::Keyed for #target {
-            fn keys() -> ::std::vec::Vec<&'static str> {
-                #keys
-            }
+            #definition
+
+            #keys
         }
 
         #[allow(unused_variables)]
@@ -179,7 +190,6 @@ pub(crate) fn implementation(
 
         impl #generics crate::declaration::DeckTable<#ty> for #target {
             const ABOUT: &'static str = #about;
-            #definition
             #unique
         }
 

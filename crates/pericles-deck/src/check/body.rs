@@ -5,27 +5,22 @@ use pericles::material::{
     BondFailure, ElasticModulus, Fracture, InterfaceStiffness, Modulus, StressState,
     SurfaceCorrection,
 };
-use pericles::space::Shape;
 
-use crate::body::{
-    FilledCells, FilledShape, Lattice, Piece, Quadrature, RotationScope, SolidShape, VertexAreas,
-    piece_path,
-};
+use crate::body::{VertexAreas, piece_path};
 use crate::declaration::{Check, DeckKeys, DeckValue};
 use crate::fault::Fault;
 use crate::interface::InterfaceFailure;
 use crate::key_path::KeyPath;
 use crate::material::{Material, MaterialModel, difference};
 use crate::model::{Model, Solid};
-use crate::region::Frame;
 use crate::remark::Remark;
-use crate::set::{SetNames, bad_name};
+use crate::set::SetNames;
 use crate::state_based::StateBased;
 use crate::surface::{SurfaceBody, SurfaceScope};
 
 impl Check {
     pub(super) fn solid(&mut self, key: &KeyPath, solid: &Solid) {
-        self.shape(key, &solid.shape);
+        solid.shape.check(key, self);
         let section = ["body.area", "body.thickness", "body"];
         let dimension = solid.shape.dimension();
         let right = (1..=3).contains(&dimension);
@@ -42,117 +37,6 @@ impl Check {
         let allowed = "allowed: uniaxial in one dimension, plane stress or plane strain in two, spatial in three";
         self.within(fits, key.key("plane"), solid.state.name(), allowed);
         self.material(&solid.material, solid.state, dimension);
-    }
-
-    fn shape(&mut self, key: &KeyPath, shape: &SolidShape) {
-        match shape {
-            SolidShape::Lattice(lattice) => self.lattice(key, lattice),
-            SolidShape::Points(points) => points.check_keys(key, (), self),
-            SolidShape::Mesh(mesh) => mesh.check_keys(key, (), self),
-            SolidShape::Filled(filled) => self.filled(key, filled),
-            SolidShape::Pieces(pieces) => self.pieces(key, pieces),
-        }
-    }
-
-    fn pieces(&mut self, key: &KeyPath, pieces: &[Piece]) {
-        let allowed = "allowed: at least one piece";
-        self.within(!pieces.is_empty(), key.key("piece"), pieces.len(), allowed);
-        for (k, piece) in pieces.iter().enumerate() {
-            let key = piece_path(k);
-            let whole = piece.shape.pieces().is_empty()
-                && !piece.shape.is_periodic()
-                && !piece.shape.is_refined()
-                && !piece.shape.has_gauss_nodes();
-            let allowed =
-                "allowed: a shape that is not periodic, with one point per cell and one cell size";
-            self.within(whole, key.key("shape"), &piece.name, allowed);
-            if whole {
-                self.shape(&key, &piece.shape);
-            }
-            let first = &pieces[0].shape;
-            let alike = first.dimension() == piece.shape.dimension()
-                && first.section() == piece.shape.section();
-            let allowed = "allowed: the dimension and the `area` or `thickness` of the body";
-            self.within(alike, key.key("shape"), &piece.name, allowed);
-            let known = pieces[..k].iter().any(|other| other.name == piece.name);
-            let allowed = "allowed: a name that no other piece has";
-            self.within(
-                !known && bad_name(&piece.name).is_none(),
-                key.key("name"),
-                &piece.name,
-                allowed,
-            );
-            if let Some(rotation) = piece.rotation {
-                let scope = RotationScope::of_piece(Some(first.dimension()));
-                rotation.check(key.key("rotation"), scope, self);
-            }
-        }
-    }
-
-    fn filled(&mut self, key: &KeyPath, filled: &FilledShape) {
-        filled.check_keys(key, filled.dimension, self);
-        let random = filled.positions.are_random();
-        let right = filled.cells == FilledCells::Whole || !random;
-        let allowed = "allowed: \"whole\" with random positions";
-        self.within(right, key.key("cells"), "partial", allowed);
-        let right = filled.is_on_lattice() || filled.finer.is_empty();
-        let allowed = "allowed: with whole cells on a lattice";
-        self.within(right, key.key("refine"), filled.finer.len(), allowed);
-    }
-
-    fn lattice(&mut self, key: &KeyPath, lattice: &Lattice) {
-        self.positive(key.key("spacing"), lattice.grid.spacing);
-        let frame = Frame::of_model(lattice.grid.dimension());
-        lattice.grid.holes.check(key.key("hole"), frame, self);
-        lattice.finer.check(key.key("refine"), frame, self);
-        match &lattice.grid.shape {
-            Shape::Box { size, .. } => {
-                for (k, side) in size.iter().enumerate() {
-                    self.positive(key.key("size").index(k), *side);
-                }
-            }
-            Shape::Disc { radius, .. } | Shape::Ball { radius, .. } => {
-                self.positive(key.key("radius"), *radius);
-            }
-            Shape::Cylinder {
-                axis,
-                radius,
-                height,
-                ..
-            } => {
-                self.axis(key.key("axis"), *axis);
-                self.positive(key.key("radius"), *radius);
-                self.positive(key.key("height"), *height);
-            }
-        }
-        let sides = match &lattice.grid.shape {
-            Shape::Box { size, .. } => size.len(),
-            _ => 0,
-        };
-        if let Some(spacings) = &lattice.rectangular {
-            let allowed = "allowed: one spacing per axis, for bars, plates and blocks only";
-            let right = spacings.len() == sides;
-            self.within(right, key.key("spacing"), spacings.len(), allowed);
-            for (k, spacing) in spacings.iter().enumerate() {
-                self.positive(key.key("spacing").index(k), *spacing);
-            }
-        }
-        let gauss = lattice.quadrature == Quadrature::Gauss;
-        let allowed = "allowed: \"midpoint\", except for a bar";
-        self.within(
-            !gauss || sides == 1,
-            key.key("quadrature"),
-            "gauss",
-            allowed,
-        );
-        lattice.positions.check_keys(key, (), self);
-        let plain = lattice.rectangular.is_none()
-            && lattice.finer.is_empty()
-            && !lattice.periodic
-            && !gauss;
-        let right = plain || !lattice.positions.are_random();
-        let allowed = "allowed: \"lattice\" in periodic bodies, with Gauss nodes and with cells of several sizes";
-        self.within(right, key.key("positions"), "random", allowed);
     }
 
     fn material(&mut self, material: &Material, state: StressState, dimension: usize) {

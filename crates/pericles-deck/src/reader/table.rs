@@ -5,6 +5,7 @@ use std::cell::RefCell;
 use serde_json::Value as Json;
 
 use super::{Form, Item, Ledger};
+use crate::declaration::Group;
 use crate::document::Entry;
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
@@ -460,13 +461,12 @@ impl<'a> Item<'a> {
 /// An alternative of a table: a word or an exclusive key, with the keys that it selects.
 pub(crate) struct Alternative {
     pub(crate) name: &'static str,
-    /// Groups of keys, and why other alternatives reject them, if the reason is not the choice itself.
-    pub(crate) keys: Vec<(Vec<&'static str>, Option<&'static str>)>,
+    pub(crate) groups: Vec<Group>,
 }
 
 impl Alternative {
     fn keys(&self) -> impl Iterator<Item = (&'static str, Option<&'static str>)> {
-        let groups = self.keys.iter();
+        let groups = self.groups.iter();
         groups.flat_map(|(keys, reason)| keys.iter().map(|key| (*key, *reason)))
     }
 
