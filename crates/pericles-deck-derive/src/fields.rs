@@ -212,8 +212,11 @@ impl Field {
                 let message = "a key that may be forbidden needs a default or the type `Option`";
                 return Err(Error::new_spanned(condition, message));
             };
+            let keys = self.keys();
             reading = quote_spanned!(here()=> if #condition {
-                table.forbid(#key, #reason);
+                for key in #keys {
+                    table.forbid(key, #reason);
+                }
                 Some(#value)
             } else {
                 #reading

@@ -81,6 +81,8 @@ fn tagged_keys(
             .map(|field| field.groups(&quote_spanned!(here()=> word)));
         quote_spanned!(here()=> #word => ::std::vec![#(#groups),*])
     });
+    let fields = variants.iter().flat_map(|variant| &variant.fields);
+    let every = fields.map(|field| field.groups(&quote_spanned!(here()=> word)));
     quote_spanned!(here()=>
         fn keys() -> ::std::vec::Vec<&'static str> {
             [::std::vec![#tag], #(#all),*].concat()
@@ -90,7 +92,7 @@ fn tagged_keys(
             let groups: ::std::vec::Vec<::std::vec::Vec<crate::declaration::Group>> = match word {
                 #(#arms,)*
                 // The word of another tag.
-                _ => ::std::vec![::std::vec![(Self::keys(), None)]],
+                _ => ::std::vec![::std::vec![(::std::vec![#tag], None)], #(#every),*],
             };
             groups.concat()
         }

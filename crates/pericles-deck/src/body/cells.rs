@@ -1,6 +1,6 @@
 //! Cells of a grid: spacing, holes, refined parts, positions of points.
 
-use pericles::space::{Finer, Grid, Region, Shape};
+use pericles::space::{Finer, Grid, Point, Region, Shape};
 use pericles_deck_derive::{DeckTable, DeckWords};
 use serde::{Deserialize, Serialize};
 
@@ -8,6 +8,7 @@ use super::plane::section;
 use super::positions::Positions;
 use super::types::Lattice;
 use crate::declaration::Check;
+use crate::form::described;
 use crate::key_path::KeyPath;
 use crate::quantity::Quantity;
 use crate::range::POSITIVE;
@@ -186,3 +187,39 @@ fn check_spacings(spacing: &[f64], path: &KeyPath, scope: CellScope, check: &mut
         check.number(path, *dx, POSITIVE);
     }
 }
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Grid", deny_unknown_fields)]
+struct GridForm {
+    #[serde(with = "crate::form")]
+    shape: Shape,
+    spacing: f64,
+    section: f64,
+    #[serde(rename = "hole", with = "crate::form")]
+    holes: Vec<Region>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Shape", rename_all = "snake_case", deny_unknown_fields)]
+enum ShapeForm {
+    Box {
+        origin: Point,
+        size: Vec<f64>,
+    },
+    Disc {
+        centre: Point,
+        radius: f64,
+    },
+    Cylinder {
+        base: Point,
+        axis: usize,
+        radius: f64,
+        height: f64,
+    },
+    Ball {
+        centre: Point,
+        radius: f64,
+    },
+}
+
+described!(Grid: GridForm, Shape: ShapeForm);

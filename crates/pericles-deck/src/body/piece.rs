@@ -81,11 +81,14 @@ pub(super) struct PieceRead<'a> {
     origin: [f64; 3],
 }
 
+const PIECES: &str = "Further pieces of the body, each with the keys of `[body]`. No bond joins points of different pieces; they interact by `[contact]`. `spacing`, `thickness`, `area` and `plane` are taken from `[body]` if omitted. The points form one grid if all pieces lie on the cells of one lattice, otherwise a neighbour list is used. Points of different pieces must be at least half a cell apart; points one cell apart touch.";
+
 /// Reads `[body]` with its further pieces; `shape` reads the keys of a shape.
 pub(super) fn read<'a>(
     table: Table<'a>,
     shape: impl Fn(&Table<'a>, bool) -> (BodyRead, [f64; 3]) + Copy,
 ) -> BodyRead {
+    table.describe("piece", PIECES);
     let tables = table.tables("piece");
     let has_further = !tables.is_empty();
     let others = tables.into_iter().map(|table| {
