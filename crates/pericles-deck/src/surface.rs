@@ -28,6 +28,21 @@ pub struct SurfaceBody {
     pub geodesics: Geodesics,
 }
 
+impl SurfaceBody {
+    /// Checks the areas of the vertices and the material.
+    pub(crate) fn check(&self, check: &mut Check) {
+        if let VertexAreas::Same(area) = self.areas {
+            check.positive("body.areas".into(), area);
+        }
+        let sets = SetNames::any();
+        let scope = SurfaceScope {
+            spacing: None,
+            sets: &sets,
+        };
+        self.material.check("material".into(), scope, check);
+    }
+}
+
 /// 2-manifolds: distances along the surface.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]

@@ -1,11 +1,11 @@
 //! Cells of a grid: spacing, holes, refined parts, positions of points.
 
 use pericles::space::{Finer, Grid, Point, Region, Shape};
-use pericles_deck_derive::{DeckTable, DeckWords};
+use pericles_deck_derive::DeckTable;
 use serde::{Deserialize, Serialize};
 
 use super::plane::section;
-use super::positions::Positions;
+use super::positions::{Positions, Quadrature};
 use super::types::Lattice;
 use crate::declaration::Check;
 use crate::form::described;
@@ -61,18 +61,6 @@ pub(super) struct GivenCells {
         )
     )]
     quadrature: Quadrature,
-}
-
-/// Quadrature points of cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
-#[serde(rename_all = "snake_case")]
-#[deck(what = "quadrature")]
-pub enum Quadrature {
-    /// One point at the centre.
-    #[default]
-    Midpoint,
-    /// The two Gauss nodes of a cell of a bar.
-    Gauss,
 }
 
 impl GivenCells {

@@ -1,7 +1,7 @@
 //! Checks of bodies made by programs: the ranges of the declared keys, and rules that decks satisfy by their form.
 
-use super::cells::Quadrature;
 use super::piece::{PieceKeys, PieceScope};
+use super::positions::Quadrature;
 use super::shape::GivenShape;
 use super::sources::{FilledCells, FilledShape};
 use super::types::{Lattice, Piece, SolidShape, piece_path};

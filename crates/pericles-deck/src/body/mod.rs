@@ -12,8 +12,7 @@ mod surface;
 mod types;
 mod unit;
 
-pub use cells::Quadrature;
-pub use positions::Positions;
+pub use positions::{Positions, Quadrature};
 pub use rotation::Rotation;
 pub use sources::{Boundary, FilledCells, FilledShape, MeshFile, PointsFile};
 pub use surface::{SurfaceFile, SurfaceFormula, SurfaceShape, VertexAreas};

@@ -6,8 +6,7 @@ use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
 use serde::{Deserialize, Serialize};
 
-use super::cells::Quadrature;
-use super::positions::Positions;
+use super::positions::{Positions, Quadrature};
 use super::rotation::Rotation;
 use super::sources::{FilledShape, MeshFile, PointsFile};
 use super::surface::{SurfaceShape, VertexAreas};

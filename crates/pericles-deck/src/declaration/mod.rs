@@ -36,6 +36,8 @@ mod values;
 pub(crate) use check::Check;
 pub(crate) use values::Measured;
 
+pub(crate) use crate::reader::Group;
+
 use crate::key_path::KeyPath;
 use crate::reader::{Item, Table};
 
@@ -52,9 +54,6 @@ pub(crate) trait Keyed {
         vec![(Self::keys(), None)]
     }
 }
-
-/// Keys of an alternative, and why other alternatives reject them, if the reason is not the choice itself.
-pub(crate) type Group = (Vec<&'static str>, Option<&'static str>);
 
 /// Keys in a table, which may have further keys.
 pub(crate) trait DeckKeys<S>: Sized {

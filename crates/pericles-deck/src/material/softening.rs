@@ -8,7 +8,6 @@ use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
 use super::scope::MaterialScope;
-use super::types::Material;
 use crate::declaration::Fallback;
 use crate::expression::BondExpression;
 use crate::fault::Fault;
@@ -169,24 +168,31 @@ impl Failure {
 }
 
 impl StrengthKeys {
-    /// Adds the keys to a material whose fracture energy has this calibration.
-    pub(super) fn add_to(self, material: &mut Material, calibration: FractureCalibration) {
+    /// Returns tensile strength, softening and strength surface of a material whose fracture energy has this calibration.
+    pub(super) fn made(self, calibration: FractureCalibration) -> Strength {
         let strength = self.tensile_strength;
-        material.tensile_strength = strength.map(|strength| TensileStrength {
-            strength,
-            calibration,
-        });
         let usual = self.failure.is_by_strength().then_some(BondSoftening {
             law: SofteningLaw::Linear,
             onset_stretch: None,
         });
-        material.softening = self.softening.or(usual);
-        material.strength_surface = match self.failure {
+        let surface = match self.failure {
             Failure::Stretch => None,
             Failure::Strength { strength_surface } => Some(strength_surface),
         };
+        let strength = strength.map(|strength| TensileStrength {
+            strength,
+            calibration,
+        });
+        (strength, self.softening.or(usual), surface)
     }
 }
+
+/// Tensile strength, softening and strength surface of a material.
+pub(super) type Strength = (
+    Option<TensileStrength>,
+    Option<BondSoftening>,
+    Option<FailureSurface>,
+);
 
 /// Reads a strength surface.
 fn surface(item: &Item<'_>, scope: MaterialScope<'_>) -> Option<FailureSurface> {

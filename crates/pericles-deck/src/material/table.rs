@@ -87,6 +87,10 @@ struct Shared {
 /// constitutive laws through a nonlocal deformation gradient.
 #[derive(DeckKeys)]
 #[deck(tag = "model", what = "model", scope = MaterialScope<'s>)]
+#[expect(
+    clippy::large_enum_variant,
+    reason = "one value exists while a table is read"
+)]
 enum GivenModel {
     #[default]
     BondStretch {
@@ -182,15 +186,16 @@ impl GivenMaterial {
             volume_correction,
             fracture: self.fracture,
         };
-        let mut material = Material {
+        let strength = strength.map(|strength| strength.made(self.calibration));
+        let (tensile_strength, softening, strength_surface) = strength.unwrap_or_default();
+        Some(Material {
             surface_correction: keys.surface_correction,
             tuned,
+            tensile_strength,
+            softening,
+            strength_surface,
             ..self.shared.of(MaterialModel::Bonds(bonds))
-        };
-        if let Some(strength) = strength {
-            strength.add_to(&mut material, self.calibration);
-        }
-        Some(material)
+        })
     }
 }
 

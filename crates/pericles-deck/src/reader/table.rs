@@ -5,7 +5,6 @@ use std::cell::RefCell;
 use serde_json::Value as Json;
 
 use super::{Form, Item, Ledger};
-use crate::declaration::Group;
 use crate::document::{Entry, Node, Value};
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
@@ -467,6 +466,9 @@ pub(crate) struct Alternative {
     pub(crate) name: &'static str,
     pub(crate) groups: Vec<Group>,
 }
+
+/// Keys of an alternative, and why other alternatives reject them, if the reason is not the choice itself.
+pub(crate) type Group = (Vec<&'static str>, Option<&'static str>);
 
 impl Alternative {
     fn keys(&self) -> impl Iterator<Item = (&'static str, Option<&'static str>)> {
