@@ -144,7 +144,13 @@ impl Deck {
                 if !table.assessment.stability.is_stable() && !self.model.time.allow_unstable =>
             {
                 let smallest = table.assessment.stability.smallest;
-                let fault = Fault::UnstableTable { smallest };
+                let fault = Fault::other(
+                    "unstable",
+                    format!(
+                        "the tuned coefficients make the lattice unstable: the smallest ω²/k² of its waves is {smallest:.3} E/ρ, but must be positive"
+                    ),
+                    "use lower_bound = \"auto\" (the default), or another method, decay or horizon; time.allow_unstable = true accepts the deck for `pericles dispersion`",
+                );
                 let problem = Remark::new("material.influence", fault);
                 Err(self.rejection(problem.into()))
             }
