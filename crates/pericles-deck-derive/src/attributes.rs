@@ -50,8 +50,10 @@ pub(crate) struct Attributes {
     pub(crate) default: Option<Fallback>,
     /// The key or word.
     pub(crate) name: Option<String>,
-    pub(crate) with: Option<Path>,
+    pub(crate) with: Option<Code>,
     pub(crate) check: Option<Path>,
+    /// A function of the value and the scope whose error is reported.
+    pub(crate) accept: Option<Path>,
     pub(crate) flatten: bool,
     /// The keys that a reader of the table reads.
     pub(crate) keys: Option<Vec<LitStr>>,
@@ -103,6 +105,7 @@ pub(crate) const OF_FIELD: &[&str] = &[
     "key",
     "with",
     "check",
+    "accept",
     "flatten",
     "keys",
     "scope",
@@ -119,6 +122,7 @@ pub(crate) const OF_STRUCT: &[&str] = &[
     "default",
     "define",
     "at_least_one",
+    "at_most_one",
     "exactly_one",
     "unique",
     "verify",
@@ -171,6 +175,7 @@ impl Attributes {
             "none" => self.none = Some(value(meta)?),
             "with" => self.with = Some(value(meta)?),
             "check" => self.check = Some(value(meta)?),
+            "accept" => self.accept = Some(value(meta)?),
             "flatten" => self.flatten = true,
             "or_empty" => self.or_empty = true,
             "required" => self.required = true,
@@ -189,7 +194,7 @@ impl Attributes {
                 [key, table] => self.unique = Some((key.value(), table.value())),
                 _ => return Err(meta.error("expected unique(\"key\", \"name of the table\")")),
             },
-            "at_least_one" | "exactly_one" => {
+            "at_least_one" | "at_most_one" | "exactly_one" => {
                 let function = meta.path.require_ident()?.clone();
                 self.groups.push((function, words(meta)?));
             }

@@ -111,8 +111,12 @@ impl Field {
 
     /// Returns the code that reads `item`.
     pub(crate) fn rule(&self) -> TokenStream {
-        let mut rule = self.simple_rule();
-        let name = &self.name;
+        let (mut rule, name, scope) = (self.simple_rule(), &self.name, self.scope());
+        if let Some(accept) = &self.attributes.accept {
+            rule = quote_spanned!(here()=>
+                (#rule).filter(|value| item.accept(#accept(value, #scope)).is_some())
+            );
+        }
         for (condition, words) in &self.attributes.allowed {
             rule = quote_spanned!(here()=> (#rule).filter(|value| {
                 let #name = Some(value);
@@ -208,21 +212,28 @@ impl Field {
                 let message = "a key that may be forbidden needs a default or the type `Option`";
                 return Err(Error::new_spanned(condition, message));
             };
+            let keys = self.keys();
             reading = quote_spanned!(here()=> if #condition {
-                table.forbid(#key, #reason);
+                for key in #keys {
+                    table.forbid(key, #reason);
+                }
                 Some(#value)
             } else {
                 #reading
             });
         }
-        // Lists of tables have descriptions, and so have the keys of a flattened value, unless its one key is named.
-        let has_own = match self.attributes.flatten {
-            true => self.attributes.name.is_none(),
-            false => self.is_list && self.attributes.with.is_none(),
-        };
-        let describe = match has_own || about.is_empty() {
-            true => TokenStream::new(),
-            false => quote_spanned!(here()=> table.describe(#key, #about);),
+        // Lists of tables have descriptions, unless several keys share them, and so have the keys of a flattened value,
+        // unless its one key is named.
+        let entry = inside(&self.ty, "Vec").filter(|_| self.attributes.with.is_none());
+        let describe = match (self.attributes.flatten, entry) {
+            _ if about.is_empty() => TokenStream::new(),
+            (true, _) if self.attributes.name.is_none() => TokenStream::new(),
+            (false, Some(entry)) => quote_spanned!(here()=>
+                if <#entry as crate::declaration::Keyed>::DEFINITION.is_some() {
+                    table.describe(#key, #about);
+                }
+            ),
+            _ => quote_spanned!(here()=> table.describe(#key, #about);),
         };
         let bound = self.bound(&reading);
         Ok(quote_spanned!(here()=> #describe #bound))
@@ -231,14 +242,29 @@ impl Field {
     /// Returns an expression of the keys of the field, a vector.
     pub(crate) fn keys(&self) -> TokenStream {
         let (ty, key, keys) = (&self.ty, &self.key, &self.attributes.keys);
-        if let Some(keys) = keys {
-            return quote_spanned!(here()=> ::std::vec![#(#keys),*]);
+        match (keys, self.has_inner_keys()) {
+            (Some(keys), _) => quote_spanned!(here()=> ::std::vec![#(#keys),*]),
+            (None, true) => quote_spanned!(here()=> <#ty as crate::declaration::Keyed>::keys()),
+            (None, false) => quote_spanned!(here()=> ::std::vec![#key]),
         }
+    }
+
+    /// Returns an expression of the groups of keys of the field that a word of a tag selects, a vector.
+    pub(crate) fn groups(&self, word: &TokenStream) -> TokenStream {
+        let (ty, keys) = (&self.ty, self.keys());
+        match &self.attributes.otherwise {
+            Some(reason) => quote_spanned!(here()=> ::std::vec![(#keys, Some(#reason))]),
+            None if self.has_inner_keys() && self.attributes.keys.is_none() => {
+                quote_spanned!(here()=> <#ty as crate::declaration::Keyed>::groups(#word))
+            }
+            None => quote_spanned!(here()=> ::std::vec![(#keys, None)]),
+        }
+    }
+
+    /// Returns whether the type of the field has the keys.
+    fn has_inner_keys(&self) -> bool {
         let is_named = self.attributes.name.is_some() || self.attributes.with.is_some();
-        match self.attributes.flatten && !is_named {
-            true => quote_spanned!(here()=> <#ty as crate::declaration::Keyed>::keys()),
-            false => quote_spanned!(here()=> ::std::vec![#key]),
-        }
+        self.attributes.flatten && !is_named
     }
 
     fn read_flattened(&self) -> TokenStream {
@@ -317,7 +343,7 @@ impl Field {
         let (name, ty, scope) = (&self.name, &self.ty, self.scope());
         let own = if let Some(check) = &self.attributes.check {
             quote_spanned!(here()=> #check(value, path, #scope, check);)
-        } else if self.attributes.with.is_some() {
+        } else if self.attributes.with.is_some() && self.attributes.range.is_none() {
             TokenStream::new()
         } else if self.attributes.flatten {
             quote_spanned!(here()=> crate::declaration::DeckKeys::check_keys(value, path, #scope, check);)
@@ -337,7 +363,10 @@ impl Field {
                 check.allowed(is_allowed, path.key(#key), value, #words);
             )
         });
-        let checks = quote_spanned!(here()=> #own #(#allowed)*);
+        let accept = self.attributes.accept.as_ref().map(
+            |accept| quote_spanned!(here()=> check.engine(path.key(#key), #accept(value, #scope));),
+        );
+        let checks = quote_spanned!(here()=> #own #(#allowed)* #accept);
         let checks = match (checks.is_empty(), self.is_optional) {
             (true, _) => checks,
             (false, true) => quote_spanned!(here()=> if let Some(value) = #name { #checks }),

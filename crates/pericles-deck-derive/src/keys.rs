@@ -2,7 +2,7 @@
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote_spanned;
-use syn::{Data, DeriveInput, Error, Fields, Ident, Path, Result, Type};
+use syn::{Data, DeriveInput, Error, Fields, Ident, LitStr, Path, Result, Type};
 
 use crate::attributes::{Attributes, Fallback, OF_ENUM, OF_VARIANT};
 use crate::fields::{Field, fields, here, scope};
@@ -42,14 +42,16 @@ pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
         .map(Field::keys);
     let (keys, read, check) = match (&attributes.tag, attributes.exclusive) {
         (Some(tag), false) => (
-            quote_spanned!(here()=> [::std::vec![#tag], #(#all),*].concat()),
+            tagged_keys(tag, all, &variants),
             tagged(&input, &attributes, &tag.value(), &variants)?,
             check(&target, Some(&tag.value()), &variants),
         ),
         (None, true) => {
             let further = variants.iter().flat_map(Variant::further).map(Field::keys);
             let keys = quote_spanned!(here()=>
-                [<Self as crate::declaration::Exclusive>::choices().to_vec(), #(#further),*].concat()
+                fn keys() -> ::std::vec::Vec<&'static str> {
+                    [<Self as crate::declaration::Exclusive>::choices().to_vec(), #(#further),*].concat()
+                }
             );
             let read = exclusive(&target, &attributes, &variants);
             let mut code = choice(&target, &attributes, &variants)?;
@@ -63,6 +65,38 @@ pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
         }
     };
     Ok(implementation(&attributes, &target, &keys, &read, &check))
+}
+
+/// Returns the functions of the keys of all variants, and of the groups of keys that a word selects.
+fn tagged_keys(
+    tag: &LitStr,
+    all: impl Iterator<Item = TokenStream>,
+    variants: &[Variant<'_>],
+) -> TokenStream {
+    let arms = variants.iter().map(|variant| {
+        let word = variant.named('-');
+        let groups = variant
+            .fields
+            .iter()
+            .map(|field| field.groups(&quote_spanned!(here()=> word)));
+        quote_spanned!(here()=> #word => ::std::vec![#(#groups),*])
+    });
+    let fields = variants.iter().flat_map(|variant| &variant.fields);
+    let every = fields.map(|field| field.groups(&quote_spanned!(here()=> word)));
+    quote_spanned!(here()=>
+        fn keys() -> ::std::vec::Vec<&'static str> {
+            [::std::vec![#tag], #(#all),*].concat()
+        }
+
+        fn groups(word: &str) -> ::std::vec::Vec<crate::declaration::Group> {
+            let groups: ::std::vec::Vec<::std::vec::Vec<crate::declaration::Group>> = match word {
+                #(#arms,)*
+                // The word of another tag.
+                _ => ::std::vec![::std::vec![(::std::vec![#tag], None)], #(#every),*],
+            };
+            groups.concat()
+        }
+    )
 }
 
 /// Reads the word of a tag, then the keys of its variant.
@@ -131,11 +165,17 @@ fn tagged(
         })
         .collect::<Result<Vec<TokenStream>>>()?;
     let count = words.len();
-    let name = |variant: &Variant<'_>| format!("{:?}", variant.named('-'));
-    let alternatives = alternatives(variants, name, Variant::fields);
+    let alternatives = variants.iter().map(|variant| {
+        let word = variant.named('-');
+        let name = format!("{word:?}");
+        quote_spanned!(here()=> crate::reader::Alternative {
+            name: #name,
+            groups: <Self as crate::declaration::Keyed>::groups(#word),
+        })
+    });
     Ok(quote_spanned!(here()=>
         const WORDS: [(&str, usize); #count] = [#((#words, #numbers)),*];
-        let alternatives = #alternatives;
+        let alternatives = [#(#alternatives),*];
         table.describe(#tag, #about);
         let item = table.#request(#tag);
         let found = match &item {
@@ -164,12 +204,13 @@ fn exclusive(target: &Path, attributes: &Attributes, variants: &[Variant<'_>]) -
             };
             let record = variants.iter().map(|variant| {
                 let (name, key) = (variant.name, variant.named('_'));
-                match variant.fields.is_empty() {
-                    true => quote_spanned!(here()=> #target::#name => Some(#target::#name)),
-                    false => quote_spanned!(here()=> #target::#name(value) => {
+                match (variant.fields.len(), variant.is_named) {
+                    (1, false) => quote_spanned!(here()=> #target::#name(value) => {
                         crate::declaration::Fallback::missing(value, table, #key, #scope)
                             .map(#target::#name)
                     }),
+                    // Several keys have no default.
+                    _ => quote_spanned!(here()=> usual @ #target::#name { .. } => Some(usual)),
                 }
             });
             quote_spanned!(here()=> match table.at_most_one(keys) {
@@ -257,8 +298,15 @@ fn choice(target: &Path, attributes: &Attributes, variants: &[Variant<'_>]) -> R
             }))
         })
         .collect::<Result<Vec<TokenStream>>>()?;
-    let name = |variant: &Variant<'_>| format!("`{}`", variant.named('_'));
-    let alternatives = alternatives(with_keys(variants), name, Variant::further);
+    let alternatives = with_keys(variants).map(|variant| {
+        let name = format!("`{}`", variant.named('_'));
+        let groups = variant.further().map(|field| field.groups(&quote_spanned!(here()=> "")));
+        quote_spanned!(here()=> crate::reader::Alternative {
+            name: #name,
+            groups: ::std::vec::Vec::<::std::vec::Vec<crate::declaration::Group>>::from([#(#groups),*])
+                .concat(),
+        })
+    });
     let (generics, ty) = scoped(attributes);
     Ok(quote_spanned!(here()=>
         impl crate::declaration::Exclusive for #target {
@@ -281,7 +329,7 @@ fn choice(target: &Path, attributes: &Attributes, variants: &[Variant<'_>]) -> R
                 item: &crate::reader::Item<'_>,
                 #scope: #ty,
             ) -> ::core::option::Option<Self> {
-                let alternatives = #alternatives;
+                let alternatives = [#(#alternatives),*];
                 match key {
                     #(#arms)*
                     _ => None,
@@ -296,27 +344,6 @@ fn with_keys<'a, 'b>(variants: &'a [Variant<'b>]) -> impl Iterator<Item = &'a Va
     let has_key =
         |variant: &&Variant<'_>| !variant.fields.is_empty() || variant.attributes.name.is_some();
     variants.iter().filter(has_key)
-}
-
-/// Lists the alternatives of a choice with the keys that others reject.
-fn alternatives<'a, 'b: 'a, F: Iterator<Item = &'a Field>>(
-    variants: impl IntoIterator<Item = &'a Variant<'b>>,
-    name: impl Fn(&Variant<'b>) -> String,
-    fields: impl Fn(&'a Variant<'b>) -> F,
-) -> TokenStream {
-    let alternatives = variants.into_iter().map(|variant| {
-        let keys = fields(variant).map(|field| {
-            let (keys, reason) = (field.keys(), &field.attributes.otherwise);
-            let reason = match reason {
-                Some(reason) => quote_spanned!(here()=> Some(#reason)),
-                None => quote_spanned!(here()=> None),
-            };
-            quote_spanned!(here()=> (#keys, #reason))
-        });
-        let name = name(variant);
-        quote_spanned!(here()=> crate::reader::Alternative { name: #name, keys: ::std::vec![#(#keys),*] })
-    });
-    quote_spanned!(here()=> [#(#alternatives),*])
 }
 
 /// Checks the keys of a variant. Without a tag, the key of the first field is named after the variant.
@@ -410,10 +437,6 @@ impl Variant<'_> {
             .map(Field::read)
             .collect::<Result<Vec<_>>>()?;
         Ok(quote_spanned!(here()=> #value #(#reads)* Some(#made)))
-    }
-
-    fn fields(&self) -> impl Iterator<Item = &Field> {
-        self.fields.iter()
     }
 
     /// Returns the fields in the table of the variant except the first one.

@@ -20,12 +20,13 @@
 //! | `none = "auto"` | of an `Option`: the word for `None`, which `default` alone makes the default |
 //! | `required` | of a `Vec`: the key is required |
 //! | `required_if(condition)` | of an `Option` or with a default: the key is required if the condition holds |
-//! | `with = function` | reader of the value: a function of the item and the scope; with `flatten` of the table and the scope |
-//! | `check = function` | range check of a value with a reader of its own: a function of the value, the path of the table, the scope and the collector |
+//! | `with = function` | reader of the value: a function, or an expression of one, of the item and the scope; with `flatten` of the table and the scope |
+//! | `check = function` | range check of a value with a reader of its own: a function of the value, the path of the table, the scope and the collector; instead, a `range` |
+//! | `accept = function` | function of the value and the scope whose error is reported, also by the range check |
 //! | `flatten` | the field is a `DeckKeys` enum or `DeckTable` struct whose keys are in this table, or has a reader of the table (`with`); with `key`, the documentation of the field describes this key. In an exclusive enum, the field is one as well, whose keys are further choices |
 //! | `keys("cells", "thickness")` | of a field with a reader of the table: the keys that it reads, if not the name of the field |
 //! | `scope = expression` | scope of the value, instead of the scope of the table |
-//! | `forbid_if(condition, "reason")` | the key is not allowed if the condition holds; the field then has its default |
+//! | `forbid_if(condition, "reason")` | the key, or all keys of a flattened field, are not allowed if the condition holds; the field then has its default |
 //! | `allow_if(condition, "allowed values")` | the value is out of range unless the condition, which may use the field itself, holds |
 //!
 //! Expressions may use `scope` and, as `Option<&T>`, the fields above; these are `None` if their values are invalid.
@@ -42,7 +43,7 @@
 //! | `remote = Type` | declares a type of another crate, whose fields or variants are repeated |
 //! | `define = "function"` | the name of the definition of the table, or of the value of an exclusive key, in the schema, if several keys share it |
 //! | `default` | of a struct whose fields all have defaults: implements `Default` |
-//! | `at_least_one("mass", "stiffness")`, `exactly_one("temperature", "file")` | of a struct: how many of these keys are given; the first one is the key of a field |
+//! | `at_least_one("mass", "stiffness")`, `at_most_one("rule", "modulus")`, `exactly_one("temperature", "file")` | of a struct: how many of these keys are given |
 //! | `verify = function` | of a struct: function of the table, the value and the scope that reports values that do not fit together |
 //! | `word_for("never", value)` | of a struct: a word that may replace the table, with its value |
 //! | `unique("name", "probe")` | of a struct: texts of the key and field of this name are unique in a list of tables, which are called so |

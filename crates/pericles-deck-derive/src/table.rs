@@ -2,7 +2,7 @@
 
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote_spanned};
-use syn::{Data, DeriveInput, Error, Fields, Ident, LitStr, Path, Result};
+use syn::{Data, DeriveInput, Error, Fields, Ident, Path, Result};
 
 use crate::attributes::{Attributes, OF_STRUCT};
 use crate::fields::{Field, fields, here, scope};
@@ -19,20 +19,13 @@ pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
     let names: Vec<_> = fields.iter().map(|field| &field.name).collect();
     let values = fields.iter().map(Field::value);
     let checks = fields.iter().map(Field::check);
-    let groups = |field: &Field| -> TokenStream {
-        let starts = |keys: &[LitStr]| keys.first().is_some_and(|key| key.value() == field.key);
-        let groups = attributes.groups.iter().filter(|(_, keys)| starts(keys));
-        groups
-            .map(|(function, keys)| quote_spanned!(here()=> table.#function(&[#(#keys),*]);))
-            .collect()
-    };
     let reads = fields
         .iter()
-        .map(|field| {
-            let (groups, read) = (groups(field), field.read()?);
-            Ok(quote_spanned!(here()=> #groups #read))
-        })
+        .map(Field::read)
         .collect::<Result<Vec<TokenStream>>>()?;
+    let counts = attributes.groups.iter();
+    let counts =
+        counts.map(|(function, keys)| quote_spanned!(here()=> table.#function(&[#(#keys),*]);));
     let target = target(&input, &attributes);
     let scope = scope();
     let verify = attributes
@@ -41,6 +34,7 @@ pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
         .map(|verify| quote_spanned!(here()=> #verify(table, &value, #scope)?;));
     let read = quote_spanned!(here()=>
         #(#reads)*
+        #(#counts)*
         let value = #target { #(#names: #values),* };
         #verify
         Some(value)
@@ -50,7 +44,18 @@ pub(crate) fn derive(input: DeriveInput) -> Result<TokenStream> {
         #(#checks)*
     );
     let keys = fields.iter().map(Field::keys);
-    let keys = quote_spanned!(here()=> [#(#keys),*].concat());
+    let groups = fields
+        .iter()
+        .map(|field| field.groups(&quote_spanned!(here()=> word)));
+    let keys = quote_spanned!(here()=>
+        fn keys() -> ::std::vec::Vec<&'static str> {
+            [#(#keys),*].concat()
+        }
+
+        fn groups(word: &str) -> ::std::vec::Vec<crate::declaration::Group> {
+            [#(#groups),*].concat()
+        }
+    );
     let mut code = implementation(&attributes, &target, &keys, &read, &check);
     code.extend(defaults(&input, &attributes, &fields)?);
     Ok(code)
@@ -121,7 +126,7 @@ pub(crate) fn scoped(attributes: &Attributes) -> (TokenStream, TokenStream) {
     }
 }
 
-/// Implements `DeckKeys` by the code of its functions, and from it the other traits of tables.
+/// Implements `DeckKeys` by the code of its functions, of which `keys` are complete, and from it the other traits of tables.
 pub(crate) fn implementation(
     attributes: &Attributes,
     target: &Path,
@@ -156,9 +161,9 @@ pub(crate) fn implementation(
     let (generics, ty) = scoped(attributes);
     quote_spanned!(here()=>
         impl crate::declaration::Keyed for #target {
-            fn keys() -> ::std::vec::Vec<&'static str> {
-                #keys
-            }
+            #definition
+
+            #keys
         }
 
         #[allow(unused_variables)]
@@ -179,7 +184,6 @@ pub(crate) fn implementation(
 
         impl #generics crate::declaration::DeckTable<#ty> for #target {
             const ABOUT: &'static str = #about;
-            #definition
             #unique
         }
 

@@ -16,7 +16,7 @@ use crate::region;
 /// material, or `stiffness`. The law is St Venant–Kirchhoff's, S = C : E, and the material is elastic.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, DeckTable)]
 #[serde(deny_unknown_fields)]
-#[deck(exactly_one("youngs_modulus", "stiffness"), verify = accept)]
+#[deck(scope = (), exactly_one("youngs_modulus", "stiffness"), verify = accept)]
 pub struct Anisotropy {
     /// Young's moduli E₁, E₂, E₃ along the material axes.
     #[serde(default)]

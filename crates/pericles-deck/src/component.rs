@@ -138,13 +138,22 @@ pub(crate) fn component(
     if !item.is_table() {
         return item.quantity(quantity).map(Component::Number);
     }
+    expression_in(item, &variables.names()).map(Component::Expression)
+}
+
+/// Reads a table `{ expression = "…" }` of these variables.
+pub(crate) fn expression_in(item: &Item<'_>, variables: &[&str]) -> Option<Expression> {
     let table = item.table()?;
     table.define("expression");
-    let expression = table
-        .required("expression")
-        .and_then(|item| expression(&item, &variables.names()));
+    table.about("Function of position and time.");
+    table.describe(
+        "expression",
+        "Expression in SI units, such as \"1e-3 * exp(-(x/0.01)^2)\".",
+    );
+    let text = table.required("expression");
+    let read = text.and_then(|item| expression(&item, variables));
     table.finish();
-    expression.map(Component::Expression)
+    read
 }
 
 /// Reads an expression of these variables.

@@ -4,29 +4,138 @@ use pericles::kernel::{Influence, InfluenceFunction};
 use pericles::material::{
     Calibration, ElasticModulus, Fracture, FractureCalibration, Modulus, StressState,
 };
+use pericles_deck_derive::{DeckKeys, DeckTable};
 use pericles_waves::ForceForm;
+use serde::{Deserialize, Serialize};
 
 use crate::body::{BodyRead, SolidShape};
+use crate::form::described;
 use crate::property::{MaterialProperty, number_of};
-use crate::quantity::Quantity;
 use crate::reader::Table;
-use crate::vocabulary::{MODULI, STRENGTHS};
+use crate::vocabulary::STRENGTHS;
 use crate::words::Worded;
+
+/// Elastic modulus; the scope is the stress state.
+#[derive(Serialize, Deserialize, DeckKeys)]
+#[serde(remote = "ElasticModulus", deny_unknown_fields)]
+#[deck(exclusive, remote = ElasticModulus, scope = Option<StressState>)]
+enum ElasticModulusForm {
+    #[serde(rename = "youngs_modulus")]
+    #[deck(key = "youngs_modulus")]
+    Young(
+        /// Young's modulus E. Every material needs elastic constants: bond-based ones exactly one of E, K and G; state-based
+        /// and correspondence ones two of E, ν, K and G, or E alone for a bar. A number or an expression of position, with
+        /// which all moduli change in proportion at constant ν; a bond of a bond-based material has the mean stiffness of its
+        /// end points. Expressions use a neighbour list in state-based materials.
+        #[deck(
+            with = number_of(MaterialProperty::YoungsModulus),
+            range = POSITIVE,
+            accept = young
+        )]
+        f64,
+    ),
+    #[serde(rename = "bulk_modulus")]
+    #[deck(key = "bulk_modulus")]
+    Bulk(
+        /// Bulk modulus K.
+        #[deck(quantity = Modulus, range = POSITIVE, accept = bulk)]
+        f64,
+    ),
+    #[serde(rename = "shear_modulus")]
+    #[deck(key = "shear_modulus")]
+    Shear(
+        /// Shear modulus G.
+        #[deck(quantity = Modulus, range = POSITIVE, accept = shear)]
+        f64,
+    ),
+}
+
+fn young(modulus: &f64, state: Option<StressState>) -> pericles::Result<()> {
+    accept(ElasticModulus::Young(*modulus), state)
+}
+
+fn bulk(modulus: &f64, state: Option<StressState>) -> pericles::Result<()> {
+    accept(ElasticModulus::Bulk(*modulus), state)
+}
+
+fn shear(modulus: &f64, state: Option<StressState>) -> pericles::Result<()> {
+    accept(ElasticModulus::Shear(*modulus), state)
+}
+
+/// Rejects a modulus that does not determine Young's modulus in this stress state.
+fn accept(modulus: ElasticModulus, state: Option<StressState>) -> pericles::Result<()> {
+    match state {
+        Some(state) => modulus.young(state).map(drop),
+        None => Ok(()),
+    }
+}
+
+/// Elastic modulus of bonds with its calibration.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "Modulus", deny_unknown_fields)]
+#[deck(remote = Modulus, scope = Option<StressState>)]
+struct ModulusForm {
+    #[serde(with = "crate::form")]
+    #[deck(flatten)]
+    value: ElasticModulus,
+    /// Bond-based: how the bond constant c follows from the elastic modulus. `continuum`: integrals over the horizon; the
+    /// stiffness on a grid then has the error that `check` prints (-5.8 % for a conical influence function and m = 3).
+    /// `lattice`: sums over the bonds of the grid, exact in the bulk; recommended. `unmodified`: integrals of the constant
+    /// influence function with the same `acts_on`. The functions `lattice-classes` and `tuned` always use `lattice`; spectral
+    /// forces and Gauss nodes use integrals.
+    #[serde(with = "crate::form")]
+    #[deck(
+        key = "modulus",
+        default = Calibration::Continuum,
+        otherwise = "the bulk stiffness of a state-based material is exact on every lattice; use influence = { function = \"isotropic\" } for exact shear"
+    )]
+    calibration: Calibration,
+}
+
+/// Strength of bonds. The scope is the calibration of the fracture energy; none if it is invalid.
+#[derive(Serialize, Deserialize, DeckKeys)]
+#[serde(remote = "Fracture", rename_all = "snake_case", deny_unknown_fields)]
+#[deck(
+    exclusive,
+    remote = Fracture,
+    default = Fracture::Unbreakable,
+    scope = Option<FractureCalibration>
+)]
+enum FractureForm {
+    Unbreakable,
+    #[deck(key = "fracture_energy")]
+    Energy {
+        /// Fracture energy G_c per crack area, a number or an expression of position. It determines the critical stretch by
+        /// `fracture_calibration`. Default: bonds never break unless `critical_stretch` is given.
+        #[deck(with = number_of(MaterialProperty::FractureEnergy), range = POSITIVE)]
+        energy: f64,
+        #[serde(with = "crate::form")]
+        #[deck(flatten, keys(), with = calibration)]
+        calibration: FractureCalibration,
+    },
+    CriticalStretch(
+        /// Critical stretch s₀, a number or an expression of position: bonds break when their stretch exceeds it. A bond has the
+        /// mean of its end points.
+        #[deck(with = number_of(MaterialProperty::CriticalStretch), range = POSITIVE)]
+        f64,
+    ),
+}
+
+fn calibration(_: &Table<'_>, scope: Option<FractureCalibration>) -> Option<FractureCalibration> {
+    scope
+}
+
+described!(ElasticModulus: ElasticModulusForm, Modulus: ModulusForm, Fracture: FractureForm);
 
 /// Rules by which bond constants follow from moduli and fracture energies.
 pub(crate) struct ConstantRules {
-    /// Stress state.
-    pub(crate) state: Option<StressState>,
     /// Allowed calibrations of the modulus.
     pub(crate) sums: Sums,
-    /// How critical stretches follow from fracture energies; none if invalid.
-    pub(crate) fracture: Option<FractureCalibration>,
 }
 
 impl ConstantRules {
     /// Checks the calibration of a modulus; influence functions per lattice class default to the lattice calibration.
-    pub(crate) fn modulus(&self, table: &Table<'_>, read: Option<Modulus>) -> Option<Modulus> {
-        let read = read?;
+    pub(crate) fn modulus(&self, table: &Table<'_>, read: Modulus) -> Option<Modulus> {
         let given = table.optional("modulus");
         match (self.sums, read.calibration, given) {
             (Sums::Lattice, _, None) => {
@@ -55,17 +164,6 @@ impl ConstantRules {
             }
             _ => Some(read),
         }
-    }
-
-    /// Sets the body's calibration of the fracture energy.
-    pub(crate) fn fracture(&self, read: Option<Fracture>) -> Option<Fracture> {
-        Some(match read? {
-            Fracture::Energy { energy, .. } => Fracture::Energy {
-                energy,
-                calibration: self.fracture?,
-            },
-            other => other,
-        })
     }
 
     pub(crate) fn check_volume_correction(&self, table: &Table<'_>) {
@@ -106,30 +204,6 @@ impl Sums {
     }
 }
 
-/// Reads the modulus with its calibration, unchecked; see [`ConstantRules::modulus`].
-pub(crate) fn modulus(table: &Table<'_>, state: Option<StressState>) -> Option<Modulus> {
-    let value = table.exactly_one(MODULI).and_then(|(kind, item)| {
-        let number = match kind {
-            "youngs_modulus" => number_of(&item, MaterialProperty::YoungsModulus)?,
-            _ => item.positive(Quantity::Modulus)?,
-        };
-        let value = match kind {
-            "youngs_modulus" => ElasticModulus::Young(number),
-            "bulk_modulus" => ElasticModulus::Bulk(number),
-            _ => ElasticModulus::Shear(number),
-        };
-        if let Some(state) = state {
-            item.accept(value.young(state))?;
-        }
-        Some(value)
-    });
-    let calibration = table.worded("modulus", "calibration");
-    Some(Modulus {
-        value: value?,
-        calibration: calibration?,
-    })
-}
-
 /// Reads `fracture_calibration`. `shared`: other materials inherit it, so that it is allowed even if the
 /// bonds of this one never break.
 pub(crate) fn fracture_calibration(
@@ -159,36 +233,4 @@ pub(crate) fn fracture_calibration(
         return None;
     }
     Some(given)
-}
-
-/// Checks Poisson's ratio against the value of bond-based models.
-pub(crate) fn poisson_ratio(table: &Table<'_>, state: Option<StressState>) {
-    if state == Some(StressState::Uniaxial) {
-        table.forbid(
-            "poisson_ratio",
-            "the motion of a bar does not depend on Poisson's ratio; remove the key",
-        );
-        return;
-    }
-    let Some(item) = table.optional("poisson_ratio") else {
-        return;
-    };
-    if let (Some(ratio), Some(state)) = (item.quantity(Quantity::Number), state) {
-        item.accept(state.check_poisson_ratio(ratio));
-    }
-}
-
-/// Reads `fracture_energy` or `critical_stretch`; [`ConstantRules::fracture`] sets the calibration.
-pub(crate) fn fracture(table: &Table<'_>) -> Option<Fracture> {
-    match table.at_most_one(STRENGTHS)? {
-        None => Some(Fracture::Unbreakable),
-        Some(("fracture_energy", item)) => Some(Fracture::Energy {
-            energy: number_of(&item, MaterialProperty::FractureEnergy)?,
-            calibration: FractureCalibration::default(),
-        }),
-        Some((_, item)) => {
-            let stretch = number_of(&item, MaterialProperty::CriticalStretch)?;
-            Some(Fracture::CriticalStretch(stretch))
-        }
-    }
 }

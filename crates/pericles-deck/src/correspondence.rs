@@ -5,15 +5,13 @@ use pericles::material::{LinearSolid, Strains};
 use pericles_solids::correspondence::{
     CorrespondenceMaterial, ElasticLaw, Plasticity, Stabilisation,
 };
-use pericles_solids::inelastic::{Inelasticity, Yield};
+use pericles_solids::inelastic::Inelasticity;
 use serde::{Deserialize, Serialize};
 
 use crate::anisotropy::Anisotropy;
 use crate::criterion::FailureCriterion;
-use crate::declaration::DeckValue;
-use crate::reader::Table;
-use crate::state_based::{StateBased, read_yield};
-use crate::vocabulary::MODULI;
+use crate::form::described;
+use crate::state_based::StateBased;
 
 /// A correspondence material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -68,57 +66,12 @@ impl Correspondence {
     }
 }
 
-/// Keys of correspondence materials only.
-const OWN_KEYS: [&str; 3] = ["law", "stabilisation", "anisotropy"];
-
-/// Rejects these keys in the table of another model.
-pub(crate) fn forbid_keys(table: &Table<'_>) {
-    for key in OWN_KEYS {
-        table.forbid(key, "it requires model = \"correspondence\"");
-    }
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Plasticity", deny_unknown_fields)]
+struct PlasticityForm {
+    yield_stress: f64,
+    #[serde(default)]
+    hardening: f64,
 }
 
-/// Reads `anisotropy`, which replaces other elastic constants and requires an elastic material.
-pub(crate) fn anisotropy(table: &Table<'_>) -> Option<Option<Anisotropy>> {
-    let read = table.maybe("anisotropy", |item| DeckValue::read(&item, ()));
-    if table.has("anisotropy") {
-        for &key in MODULI.iter().chain(&["poisson_ratio"]) {
-            table.forbid(key, "`anisotropy` contains all elastic constants");
-        }
-        table.forbid("yield_stress", "materials with `anisotropy` are elastic");
-        table.forbid(
-            "law",
-            "with `anisotropy` it is St Venant–Kirchhoff's law with the anisotropic stiffness",
-        );
-    }
-    read
-}
-
-/// Reads the elastic law; plastic materials have the logarithmic one.
-pub(crate) fn law(table: &Table<'_>, yields: bool) -> Option<ElasticLaw> {
-    let Some(item) = table.optional("law").filter(|_| yields) else {
-        return match yields {
-            true => {
-                table.record("law", "hencky");
-                Some(ElasticLaw::Hencky)
-            }
-            false => table.worded("law", "elastic law"),
-        };
-    };
-    if item.is_keyword("hencky") {
-        return Some(ElasticLaw::Hencky);
-    }
-    item.out_of_range(
-        "\"hencky\" with `yield_stress`, because plasticity uses logarithmic strains; remove `law`",
-    );
-    None
-}
-
-/// Reads `yield_stress` and `hardening`.
-pub(crate) fn plasticity(table: &Table<'_>) -> Option<Option<Plasticity>> {
-    let yields = read_yield(table)?;
-    Some(yields.map(|Yield { stress, hardening }| Plasticity {
-        yield_stress: stress,
-        hardening,
-    }))
-}
+described!(Plasticity: PlasticityForm);

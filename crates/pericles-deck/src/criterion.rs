@@ -5,10 +5,6 @@ use pericles::material::{BondCriterion, BondState, Criterion, PrincipalStress};
 use serde::{Deserialize, Serialize};
 
 use crate::expression::BondExpression;
-use crate::fault::Fault;
-use crate::property::{MaterialProperty, number_of};
-use crate::reader::Table;
-use crate::vocabulary::{BY_STATE, STRENGTHS};
 
 /// A failure criterion of stress and strain.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -45,41 +41,4 @@ impl BondCriterion for BondExpression {
     fn words(&self) -> String {
         format!("where {} exceeds 1", self.text())
     }
-}
-
-/// Reads the criterion of a material whose `failure` is one of [`BY_STATE`]; `Some(None)` for other materials.
-pub(crate) fn read(
-    table: &Table<'_>,
-    dimension: Option<usize>,
-) -> Option<Option<FailureCriterion>> {
-    let failure = table.optional("failure");
-    let word = failure.and_then(|item| item.word()).unwrap_or_default();
-    for (other, key) in BY_STATE.into_iter().filter(|(other, _)| *other != word) {
-        table.forbid(key, &format!("it requires failure = \"{other}\""));
-    }
-    let Some((_, own)) = BY_STATE.into_iter().find(|(own, _)| *own == word) else {
-        return Some(None);
-    };
-    for &key in STRENGTHS.iter().chain(&["stretch_definition"]) {
-        table.forbid(
-            key,
-            &format!("with failure = \"{word}\" bonds break by `{own}`, which determines the dissipated energy"),
-        );
-    }
-    let item = table.required(own)?;
-    let criterion = match own {
-        "strength" => {
-            FailureCriterion::PrincipalStress(number_of(&item, MaterialProperty::Strength)?)
-        }
-        _ => {
-            let text = item.text()?;
-            let parsed = BondExpression::parse(&text, dimension.unwrap_or(3));
-            let parsed = parsed.map_err(|malformed| {
-                let reason = malformed.reason;
-                item.report(Fault::bad_expression(text, reason));
-            });
-            FailureCriterion::Expression(parsed.ok()?)
-        }
-    };
-    Some(Some(criterion))
 }

@@ -145,7 +145,13 @@ impl Deck {
                 if !table.assessment.stability.is_stable() && !self.model.time.allow_unstable =>
             {
                 let smallest = table.assessment.stability.smallest;
-                let fault = Fault::UnstableTable { smallest };
+                let fault = Fault::other(
+                    "unstable",
+                    format!(
+                        "the tuned coefficients make the lattice unstable: the smallest ω²/k² of its waves is {smallest:.3} E/ρ, but must be positive"
+                    ),
+                    "use lower_bound = \"auto\" (the default), or another method, decay or horizon; time.allow_unstable = true accepts the deck for `pericles dispersion`",
+                );
                 let problem = Remark::new("material.influence", fault);
                 Err(self.rejection(problem.into()))
             }
@@ -154,8 +160,18 @@ impl Deck {
     }
 }
 
+const DECK: &str = "A deck is one TOML file. It defines the body, its material, boundary and initial conditions, time integration and output.";
+const MATERIALS: &str = "Materials by name, for bodies of several materials. Each table has the keys of `[material]`. Each material has its own density, elastic constants, strength and failure, and its own horizon if it is bond-based. What all bonds of a body share (model, influence function, corrections, bonds, damage, no_fail) comes from `[material]`. `[[assign]]` assigns materials to sets. Points without an assignment have the material of `[material]` if it has density and modulus, otherwise `[materials.default]`; without either, every point needs an assignment.";
+
 /// Reads the model. All tables are read even after an error, so that all problems are reported.
 fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
+    root.about(DECK);
+    root.describe("title", "Title of the run, shown at the top of reports.");
+    root.describe("materials", MATERIALS);
+    root.describe(
+        "sets",
+        "Named sets of points. The set \"all\" always exists.",
+    );
     let title = root.maybe("title", |item| item.text());
     let body = body::read(root.required("body").and_then(|item| item.table()));
     let frame = body.frame;

@@ -138,8 +138,9 @@ pub enum ImpactorMotion {
         ///
         /// In rad/s.
         #[deck(
+            flatten,
+            key = "spin",
             with = spin,
-            default = [0.0; 3],
             otherwise = "an impactor of prescribed motion does not rotate; it requires motion = \"free\""
         )]
         spin: [f64; 3],
@@ -316,7 +317,10 @@ fn moments(item: &Item<'_>, scope: MotionScope<'_>) -> Option<[f64; 3]> {
 }
 
 /// Reads an angular velocity: about z in 2D, a vector in 3D.
-fn spin(item: &Item<'_>, scope: MotionScope<'_>) -> Option<[f64; 3]> {
+fn spin(table: &Table<'_>, scope: MotionScope<'_>) -> Option<[f64; 3]> {
+    let Some(item) = table.optional("spin") else {
+        return Some([0.0; 3]);
+    };
     match scope.deck.dimension {
         Some(1) => {
             item.out_of_range("no spin: impactors of a bar do not rotate");

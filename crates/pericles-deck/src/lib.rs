@@ -194,3 +194,4 @@ pub use thermal::{
     ThermalCondition,
 };
 pub use time::{Time, TimeStep};
+pub use wording::{shortened, spot};

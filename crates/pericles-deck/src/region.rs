@@ -253,7 +253,7 @@ pub(crate) fn axis<S>(table: &Table<'_>, _: S) -> Option<usize> {
     table.choice_or_first("axis", "axis", &[("z", 2), ("x", 0), ("y", 1)])
 }
 
-fn check_axis<S>(axis: &usize, path: &KeyPath, _: S, check: &mut Check) {
+pub(crate) fn check_axis<S>(axis: &usize, path: &KeyPath, _: S, check: &mut Check) {
     check.axis(path.key("axis"), *axis);
 }
 

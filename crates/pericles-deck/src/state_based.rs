@@ -1,18 +1,21 @@
 //! `model = "state-based"`: elastic constants and failure of linear peridynamic solids.
 
+use pericles::family::VolumeCorrection;
+use pericles::kernel::InfluenceFunction;
 use pericles::material::{
     BondFailure, Fracture, FractureCalibration, GivenConstants, LinearSolid, StateInfluence,
     Strains, StressState, StretchDefinition,
 };
+use pericles_deck_derive::DeckTable;
 use pericles_solids::inelastic::{Inelasticity, Yield};
 use serde::{Deserialize, Serialize};
 
-use crate::constants;
 use crate::criterion::FailureCriterion;
+use crate::declaration::DeckKeys;
+use crate::form::described;
 use crate::property::{MaterialProperty, number_of};
-use crate::quantity::Quantity;
+use crate::range::{NOT_NEGATIVE, Range, between};
 use crate::reader::Table;
-use crate::vocabulary::{BY_STATE, MODULI, STRENGTHS};
 
 /// A state-based material.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -49,202 +52,175 @@ impl StateBased {
     }
 }
 
-/// Rules for reading the constants of state-based materials.
-pub(crate) struct SolidRules {
-    state: Option<StressState>,
-    criterion: Option<Criterion>,
-    definition: Option<StretchDefinition>,
-    calibration: Option<FractureCalibration>,
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "LinearSolid", deny_unknown_fields)]
+struct LinearSolidForm {
+    density: f64,
+    #[serde(with = "crate::form")]
+    elastic: GivenConstants,
+    horizon: f64,
+    #[serde(with = "crate::form")]
+    influence: StateInfluence,
+    #[serde(with = "crate::form")]
+    volume_correction: VolumeCorrection,
+    #[serde(with = "crate::form")]
+    failure: BondFailure,
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Criterion {
-    Stretch,
-    BondEnergy,
-    ByState,
+#[derive(Serialize, Deserialize)]
+#[serde(
+    remote = "StateInfluence",
+    rename_all = "snake_case",
+    deny_unknown_fields
+)]
+enum StateInfluenceForm {
+    Function(#[serde(with = "crate::form")] InfluenceFunction),
+    Isotropic,
 }
 
-/// Words of `failure` for limits of bonds.
-const LIMITS: [(&str, Criterion); 2] = [
-    ("stretch", Criterion::Stretch),
-    ("bond-energy", Criterion::BondEnergy),
-];
-
-impl SolidRules {
-    /// Reads the rules of a material; `calibration` follows from the body. `shared`: other materials inherit them.
-    /// `by_state`: its bonds break by stress or strain. `only`: the definition of the critical stretch of models that have
-    /// one.
-    pub(crate) fn read(
-        table: &Table<'_>,
-        state: Option<StressState>,
-        calibration: Option<FractureCalibration>,
-        [shared, by_state]: [bool; 2],
-        only: Option<StretchDefinition>,
-    ) -> Self {
-        let words = BY_STATE.map(|(word, _)| (word, Criterion::ByState));
-        let words: Vec<_> = LIMITS.into_iter().chain(words).collect();
-        match shared || by_state {
-            true => Self::of_words(table, state, calibration, &words, only),
-            false => Self::of_breaking_bonds(table, state, calibration, &words, only),
-        }
-    }
-
-    /// Reads the rules of bonds between two materials, which break by stretch or energy.
-    pub(crate) fn interface(
-        table: &Table<'_>,
-        state: Option<StressState>,
-        calibration: Option<FractureCalibration>,
-        only: Option<StretchDefinition>,
-    ) -> Self {
-        Self::of_breaking_bonds(table, state, calibration, &LIMITS, only)
-    }
-
-    /// Reads the rules of bonds that break only with a fracture energy or a critical stretch.
-    fn of_breaking_bonds(
-        table: &Table<'_>,
-        state: Option<StressState>,
-        calibration: Option<FractureCalibration>,
-        words: &[(&'static str, Criterion)],
-        only: Option<StretchDefinition>,
-    ) -> Self {
-        if STRENGTHS.iter().any(|key| table.has(key)) {
-            return Self::of_words(table, state, calibration, words, only);
-        }
-        let definition = only.is_none().then_some("stretch_definition");
-        for key in ["failure"].into_iter().chain(definition) {
-            table.forbid(key, "bonds without `fracture_energy` never break");
-        }
-        Self {
-            state,
-            criterion: Some(Criterion::Stretch),
-            definition: Some(only.unwrap_or_default()),
-            calibration,
-        }
-    }
-
-    fn of_words(
-        table: &Table<'_>,
-        state: Option<StressState>,
-        calibration: Option<FractureCalibration>,
-        words: &[(&'static str, Criterion)],
-        only: Option<StretchDefinition>,
-    ) -> Self {
-        let criterion = table.choice_or_first("failure", "failure criterion", words);
-        let definition = match criterion {
-            _ if only.is_some() => only,
-            Some(Criterion::BondEnergy) => {
-                table.forbid(
-                    "stretch_definition",
-                    "it requires failure = \"stretch\"; the critical bond energy does not depend on it",
-                );
-                Some(StretchDefinition::default())
-            }
-            Some(Criterion::ByState) => Some(StretchDefinition::default()),
-            _ => table.worded("stretch_definition", "definition of the critical stretch"),
-        };
-        Self {
-            state,
-            criterion,
-            definition,
-            calibration,
-        }
-    }
-
-    /// Reads the elastic constants: two of four, or Young's modulus of a bar.
-    pub(crate) fn elastic(&self, table: &Table<'_>) -> Option<GivenConstants> {
-        table.together(MODULI);
-        let modulus = |key| table.maybe(key, |item| item.positive(Quantity::Modulus));
-        let young = table.maybe("youngs_modulus", |item| {
-            number_of(&item, MaterialProperty::YoungsModulus)
-        });
-        let [bulk, shear] = ["bulk_modulus", "shear_modulus"].map(modulus);
-        let is_function = table
-            .optional("youngs_modulus")
-            .is_some_and(|item| item.is_table());
-        if is_function {
-            for key in ["bulk_modulus", "shear_modulus"] {
-                table.forbid(
-                    key,
-                    "with a function as `youngs_modulus`, Poisson's ratio is constant; use `poisson_ratio`",
-                );
-            }
-        }
-        table.forbid(
-            "modulus",
-            "the bulk stiffness of a state-based material is exact on every lattice; use influence = { function = \"isotropic\" } for exact shear",
-        );
-        let poisson_ratio = if self.state == Some(StressState::Uniaxial) {
-            table.forbid(
-                "poisson_ratio",
-                "the motion of a bar does not depend on Poisson's ratio; remove the key",
-            );
-            Some(None)
-        } else {
-            table.maybe("poisson_ratio", |item| {
-                item.within(
-                    Quantity::Number,
-                    "a number above -1 and below 0.5, where bulk and shear modulus are positive",
-                    |ratio| ratio > -1.0 && ratio < 0.5,
-                )
-            })
-        };
-        let given = GivenConstants {
-            young: young?,
-            poisson_ratio: poisson_ratio?,
-            bulk: bulk?,
-            shear: shear?,
-        };
-        table.accept(given.resolve(self.state?))?;
-        Some(given)
-    }
-
-    /// Reads the failure of bonds.
-    pub(crate) fn failure(&self, table: &Table<'_>) -> Option<BondFailure> {
-        if self.criterion == Some(Criterion::ByState) {
-            return Some(BondFailure::ByCriterion);
-        }
-        if self.criterion == Some(Criterion::BondEnergy) {
-            table.forbid(
-                "critical_stretch",
-                "failure = \"bond-energy\" requires `fracture_energy`, which determines the critical bond energy",
-            );
-        }
-        let fracture = constants::fracture(table)?;
-        Some(match (fracture, self.criterion?) {
-            (Fracture::Unbreakable, _) => BondFailure::Unbreakable,
-            (Fracture::CriticalStretch(stretch), _) => BondFailure::CriticalStretch(stretch),
-            (Fracture::Energy { energy, .. }, Criterion::Stretch) => BondFailure::Stretch {
-                fracture_energy: energy,
-                definition: self.definition?,
-                calibration: self.calibration?,
-            },
-            (Fracture::Energy { .. }, Criterion::ByState) => BondFailure::ByCriterion,
-            (Fracture::Energy { energy, .. }, Criterion::BondEnergy) => BondFailure::BondEnergy {
-                fracture_energy: energy,
-                calibration: self.calibration?,
-            },
-        })
-    }
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "BondFailure", rename_all = "snake_case", deny_unknown_fields)]
+enum BondFailureForm {
+    Unbreakable,
+    CriticalStretch(f64),
+    Stretch {
+        fracture_energy: f64,
+        #[serde(with = "crate::form")]
+        definition: StretchDefinition,
+        #[serde(with = "crate::form")]
+        calibration: FractureCalibration,
+    },
+    BondEnergy {
+        fracture_energy: f64,
+        #[serde(with = "crate::form")]
+        calibration: FractureCalibration,
+    },
+    ByCriterion,
 }
 
-/// Reads `yield_stress` and `hardening` of any model.
-pub(crate) fn read_yield(table: &Table<'_>) -> Option<Option<Yield>> {
-    let stress = table.maybe("yield_stress", |item| {
-        number_of(&item, MaterialProperty::YieldStress)
-    });
-    if !table.has("yield_stress") {
+/// Elastic constants; the scope is the stress state.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "GivenConstants", deny_unknown_fields)]
+#[deck(remote = GivenConstants, scope = Option<StressState>, verify = resolve)]
+struct GivenConstantsForm {
+    /// Young's modulus E. Every material needs elastic constants: bond-based ones exactly one of E, K and G; state-based and
+    /// correspondence ones two of E, ν, K and G, or E alone for a bar. A number or an expression of position, with which all
+    /// moduli change in proportion at constant ν; a bond of a bond-based material has the mean stiffness of its end points.
+    /// Expressions use a neighbour list in state-based materials.
+    #[serde(default, rename = "youngs_modulus")]
+    #[deck(key = "youngs_modulus", with = number_of(MaterialProperty::YoungsModulus), range = POSITIVE)]
+    young: Option<f64>,
+    /// Poisson's ratio ν. state-based, correspondence: free. Bond-based: if given, it must be the value that bond-based models
+    /// have: 1/3 in plane stress, 1/4 in plane strain and 3D. Not for bars.
+    #[serde(default)]
+    #[deck(
+        range = RATIOS,
+        forbid_if(
+            scope == Some(StressState::Uniaxial),
+            "the motion of a bar does not depend on Poisson's ratio; remove the key"
+        )
+    )]
+    poisson_ratio: Option<f64>,
+    /// Bulk modulus K.
+    #[serde(default, rename = "bulk_modulus")]
+    #[deck(key = "bulk_modulus", quantity = Modulus, range = POSITIVE)]
+    bulk: Option<f64>,
+    /// Shear modulus G.
+    #[serde(default, rename = "shear_modulus")]
+    #[deck(key = "shear_modulus", quantity = Modulus, range = POSITIVE)]
+    shear: Option<f64>,
+}
+
+const RATIOS: Range = between(-1.0, 0.5)
+    .described("a number above -1 and below 0.5, where bulk and shear modulus are positive");
+
+/// Plastic flow.
+#[derive(Serialize, Deserialize, DeckTable)]
+#[serde(remote = "Yield", deny_unknown_fields)]
+#[deck(remote = Yield)]
+struct YieldForm {
+    /// Yield stress σ_y in uniaxial tension. state-based, not for bars: von Mises criterion averaged over all directions in 3D;
+    /// maximum in-plane shear stress σ_y/√3 in 2D. Uses a neighbour list. correspondence: J2 plasticity in logarithmic strains,
+    /// with the von Mises equivalent of the Kirchhoff stress. A number, an expression of position and `temperature` (K), or a
+    /// table by temperature; a point yields at the stress of its present temperature. Default: elastic.
+    #[deck(key = "yield_stress", with = number_of(MaterialProperty::YieldStress), range = POSITIVE)]
+    stress: f64,
+    /// Linear isotropic hardening modulus H: the yield stress is σ_y + H ε_p with the equivalent plastic strain ε_p.
+    #[deck(quantity = Modulus, range = HARDENING, default = 0.0)]
+    hardening: f64,
+}
+
+const HARDENING: Range = NOT_NEGATIVE.described(
+    "zero or a positive modulus; softening is not supported because the model has no length scale for it",
+);
+
+described!(
+    LinearSolid: LinearSolidForm,
+    StateInfluence: StateInfluenceForm,
+    BondFailure: BondFailureForm,
+    GivenConstants: GivenConstantsForm,
+    Yield: YieldForm,
+);
+
+/// Rejects constants that do not determine the elastic behaviour, or that are inconsistent.
+fn resolve(table: &Table<'_>, given: &GivenConstants, state: Option<StressState>) -> Option<()> {
+    table.accept(given.resolve(state?)).map(drop)
+}
+
+/// Reads `yield_stress` and `hardening`; none for elastic materials.
+pub(crate) fn read_yield<S: Copy>(table: &Table<'_>, scope: S) -> Option<Option<Yield>> {
+    if table.optional("yield_stress").is_none() {
         table.forbid("hardening", "it requires `yield_stress`");
         return Some(None);
     }
-    let hardening = table.or("hardening", 0.0, |item| {
-        item.within(
-            Quantity::Modulus,
-            "zero or a positive modulus; softening is not supported because the model has no length scale for it",
-            |hardening| hardening >= 0.0,
-        )
-    });
-    Some(Some(Yield {
-        stress: stress??,
-        hardening: hardening?,
-    }))
+    Yield::read_keys(table, scope).map(Some)
+}
+
+/// Returns the strength of bonds whose limit is a stretch or energy.
+pub(crate) fn strength_of(failure: &BondFailure) -> Fracture {
+    match *failure {
+        BondFailure::Unbreakable | BondFailure::ByCriterion => Fracture::Unbreakable,
+        BondFailure::CriticalStretch(stretch) => Fracture::CriticalStretch(stretch),
+        BondFailure::Stretch {
+            fracture_energy: energy,
+            calibration,
+            ..
+        }
+        | BondFailure::BondEnergy {
+            fracture_energy: energy,
+            calibration,
+        } => Fracture::Energy {
+            energy,
+            calibration,
+        },
+    }
+}
+
+/// Returns the failure of bonds of a strength, which break by the stretch of a definition or, without one, by their energy.
+pub(crate) fn failure_of(strength: Fracture, definition: Option<StretchDefinition>) -> BondFailure {
+    match (strength, definition) {
+        (Fracture::Unbreakable, _) => BondFailure::Unbreakable,
+        (Fracture::CriticalStretch(stretch), _) => BondFailure::CriticalStretch(stretch),
+        (
+            Fracture::Energy {
+                energy,
+                calibration,
+            },
+            Some(definition),
+        ) => BondFailure::Stretch {
+            fracture_energy: energy,
+            definition,
+            calibration,
+        },
+        (
+            Fracture::Energy {
+                energy,
+                calibration,
+            },
+            None,
+        ) => BondFailure::BondEnergy {
+            fracture_energy: energy,
+            calibration,
+        },
+    }
 }

@@ -3,10 +3,12 @@
 use pericles_deck_derive::{DeckTable, DeckWords};
 use pericles_manifold::geodesic::{Ball, GeodesicMethod};
 use pericles_manifold::{PowerMaterial, SurfaceBond};
-use serde::{Deserialize, Serialize};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::body::{SurfaceShape, VertexAreas};
 use crate::declaration::{Check, DeckValue, Fallback};
+use crate::form::Described;
 use crate::key_path::KeyPath;
 use crate::reader::{Item, Table};
 use crate::set::SetNames;
@@ -24,6 +26,21 @@ pub struct SurfaceBody {
     /// Distances along the surface.
     #[serde(default)]
     pub geodesics: Geodesics,
+}
+
+impl SurfaceBody {
+    /// Checks the areas of the vertices and the material.
+    pub(crate) fn check(&self, check: &mut Check) {
+        if let VertexAreas::Same(area) = self.areas {
+            check.positive("body.areas".into(), area);
+        }
+        let sets = SetNames::any();
+        let scope = SurfaceScope {
+            spacing: None,
+            sets: &sets,
+        };
+        self.material.check("material".into(), scope, check);
+    }
 }
 
 /// 2-manifolds: distances along the surface.
@@ -168,5 +185,18 @@ impl<S> Fallback<S> for GeodesicMethod {
     fn missing(self, table: &Table<'_>, key: &'static str, _: S) -> Option<Self> {
         table.record(key, self.to_string());
         Some(self)
+    }
+}
+
+impl Described for GeodesicMethod {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let word = String::deserialize(deserializer)?;
+        let unknown =
+            |_| D::Error::custom(format!("unknown word `{word}`; allowed: {}", Self::NAMES));
+        word.parse().map_err(unknown)
     }
 }

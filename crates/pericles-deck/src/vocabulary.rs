@@ -50,15 +50,6 @@ pub(crate) const FAILURE_RULES: &[&str] =
 /// Keys that determine the bond constant between two materials.
 pub(crate) const INTERFACE_STIFFNESSES: &[&str] =
     &["rule", "youngs_modulus", "bulk_modulus", "shear_modulus"];
-/// Keys of an interface, of which at least one is required.
-pub(crate) const INTERFACE_KEYS: &[&str] = &[
-    "rule",
-    "youngs_modulus",
-    "bulk_modulus",
-    "shear_modulus",
-    "fracture_energy",
-    "critical_stretch",
-];
 /// Keys of output schedules.
 pub(crate) const SCHEDULES: &[&str] = &["interval", "every", "count"];
 /// Keys of checkpoint schedules.

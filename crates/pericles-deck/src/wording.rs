@@ -12,7 +12,7 @@ pub(crate) fn count(number: f64) -> String {
 }
 
 /// Returns a text for quotation in messages; long texts are cut.
-pub(crate) fn shortened(text: &str) -> String {
+pub fn shortened(text: &str) -> String {
     const LONGEST: usize = 60;
     match text.char_indices().nth(LONGEST) {
         None => text.to_owned(),
@@ -98,7 +98,7 @@ pub(crate) fn prefixed(value: f64, unit: &str) -> String {
 }
 
 /// Formats a position: `(0.001, 0.002)`.
-pub(crate) fn spot(place: &[f64]) -> String {
+pub fn spot(place: &[f64]) -> String {
     let numbers: Vec<String> = place.iter().map(|x| short(*x)).collect();
     format!("({})", numbers.join(", "))
 }

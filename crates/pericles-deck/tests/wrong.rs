@@ -62,7 +62,7 @@ const WRONG: &[Wrong] = &[
     wrong("[output]", "[step]\nname = \"a\"\n[output]", (37, 2), "step", &["expected a list of tables, found a table"]),
     wrong("[output]", "[[step]]\n[[step.load]]\nset = \"botom\"\ntraction = [0, 1]\n[output]", (39, 7), "\"botom\"", &["botom"]),
     // Keys.
-    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`piece`, `shape`, `spacing`, `size`, `origin`, `thickness`, `plane`, `hole`, `refine`, `positions` and `periodic`"]),
+    wrong("spacing =", "spaceing =", (6, 1), "spaceing", &["unknown key `spaceing` in [body]", "did you mean `spacing`?", "`piece`, `shape`, `size`, `origin`, `spacing`, `thickness`, `hole`, `refine`, `positions`, `periodic` and `plane`"]),
     wrong("[time]", "[tme]", (33, 2), "tme", &["unknown key `tme` in the deck", "did you mean `time`?"]),
     wrong("depth =", "deep =", (16, 24), "deep", &["unknown key `deep` in [sets.top.layer]", "`side`, `depth` and `cells`"]),
     wrong("spacing = \"0.25 mm\"\n", "", (3, 1), "[body]", &["[body] requires `spacing`", "alternative names: `dx`"]),
@@ -377,7 +377,8 @@ const WRONG_SURFACES: &[Wrong] = &[
     wrong("\"icosphere\"", "\"icosfere\"", (2, 9), "\"icosfere\"", &["unknown shape", "did you mean `icosphere`?", "torus"]),
     wrong("radius = 1\n", "radius = 0\n", (4, 10), "0", &["a positive number"]),
     wrong("level = 2", "level = 30", (1, 1), "[body]", &["level of the icosphere"]),
-    wrong("radius = 1\n", "radius = 1\nspacing = 1\n", (5, 1), "spacing", &["unknown key `spacing`", "`areas`"]),
+    wrong("radius = 1\n", "radius = 1\nspacing = 1\n", (5, 1), "spacing", &["`spacing` is not allowed in [body]", "it requires shape = \"bar\", \"plate\""]),
+    wrong("radius = 1\n", "radius = 1\nlength = 1\n", (5, 1), "length", &["`length` is not allowed in [body]", "\"bar\" or \"capsule\""]),
     wrong("radius = 1\n", "radius = 1\nareas = \"barycentre\"\n", (5, 9), "\"barycentre\"", &["did you mean `barycentric`?"]),
     wrong("\"edge\"", "\"edges\"", (7, 10), "\"edges\"", &["exact, edge, edge-diagonals, steiner(1)"]),
     wrong("method = \"edge\"", "method = \"edge\"\nball = \"euclidean\"", (8, 8), "\"euclidean\"", &["did you mean `euclid`?", "\"geodesic\""]),

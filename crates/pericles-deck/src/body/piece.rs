@@ -1,114 +1,133 @@
-//! `[[body.piece]]`: further pieces of a body, which no bond joins to the others.
+//! `[body]` and `[[body.piece]]`: pieces of a body, which no bond joins.
+
+use pericles_deck_derive::DeckTable;
 
 use super::rotation::{Rotation, RotationScope};
+use super::shape::{GivenShape, OF_PIECE};
 use super::types::{BodyRead, Piece, SolidShape};
-use crate::declaration::DeckValue;
+use crate::declaration::{Check, DeckKeys, Spatial};
 use crate::fault::Fault;
-use crate::quantity::Quantity;
+use crate::key_path::KeyPath;
 use crate::reader::{Item, Table};
 use crate::set::bad_name;
 
 /// Name of the piece that `[body]` describes, unless it has another one.
 const MAIN: &str = "main";
 
-/// The pieces of a body after the first one, `[body]`, as far as they could be read.
-pub(super) struct Pieces<'a> {
-    /// Name of the piece of `[body]`.
-    main: Option<String>,
-    others: Vec<PieceRead<'a>>,
-}
-
-struct PieceRead<'a> {
-    name: Option<Item<'a>>,
-    shape: Option<Item<'a>>,
-    read: BodyRead,
-    /// The piece with an empty shape.
-    rest: Option<Rest>,
-}
-
 /// The keys of a piece that do not belong to its shape.
-struct Rest {
+#[derive(DeckTable)]
+#[deck(scope = PieceScope)]
+pub(super) struct PieceKeys {
+    /// Name of the piece, which is also the name of the set of its points. Required for further pieces; default for the piece
+    /// of `[body]`: "main".
+    #[deck(
+        with = name,
+        check = check_name,
+        default = MAIN.to_owned(),
+        required_if(scope.is_further),
+        forbid_if(!scope.is_further && !scope.has_further, "it requires several pieces ([[body.piece]])")
+    )]
     name: String,
-    origin: [f64; 3],
+    #[deck(
+        scope = RotationScope::of_piece(scope.dimension),
+        forbid_if(!scope.is_further, OF_PIECE),
+        forbid_if(scope.dimension == Some(1), "a bar cannot be rotated")
+    )]
     rotation: Option<Rotation>,
+    /// Further pieces: name of the material. Default: the material of the body. `[[assign]]` takes precedence.
+    #[deck(forbid_if(!scope.is_further, OF_PIECE))]
     material: Option<String>,
+    /// Further pieces: initial velocity. `[[initial]]` replaces it.
+    #[deck(quantity = Velocity, forbid_if(!scope.is_further, OF_PIECE))]
     velocity: Option<[f64; 3]>,
 }
 
-/// Reads the tables `[[body.piece]]` and the name of the piece of `[body]`; `shape` reads the keys of a shape.
-pub(super) fn read<'a>(table: &Table<'a>, shape: impl Fn(Table<'a>) -> BodyRead) -> Pieces<'a> {
-    let tables = table.tables("piece");
-    const SEVERAL: &str = "it requires several pieces ([[body.piece]])";
-    for key in ["rotation", "material", "velocity"] {
-        table.forbid(key, "it is a key of [[body.piece]]; [body] has its own position, [material] and [[initial]]");
-    }
-    let main = match tables.is_empty() {
-        true => {
-            table.forbid("name", SEVERAL);
-            None
+impl PieceKeys {
+    /// Returns the keys of a piece of a model.
+    pub(super) fn of(piece: &Piece) -> Self {
+        Self {
+            name: piece.name.clone(),
+            rotation: piece.rotation,
+            material: piece.material.clone(),
+            velocity: piece.velocity,
         }
-        false => table.or("name", MAIN.to_owned(), |item| name(&item)),
-    };
-    let others = tables.into_iter().map(|table| one(table, &shape));
-    Pieces {
-        main,
-        others: others.collect(),
     }
 }
 
-fn one<'a>(table: Table<'a>, shape: impl Fn(Table<'a>) -> BodyRead) -> PieceRead<'a> {
-    table.define("body");
-    table.forbid("piece", "pieces are listed in [[body.piece]]");
-    let name_item = table.required("name");
-    let shape_item = table.optional("shape");
-    let dimension = match shape_item.as_ref().and_then(Item::word) {
-        Some("bar") => Some(1),
-        Some("plate" | "disc" | "outline") => Some(2),
-        // Points and meshes have a key for it.
-        Some("points" | "mesh") | None => None,
-        Some(_) => Some(3),
-    };
-    let rotation = match dimension {
-        Some(1) => {
-            table.forbid("rotation", "a bar cannot be rotated");
-            Some(None)
-        }
-        _ => table.maybe("rotation", |item| {
-            Rotation::read(&item, RotationScope::of_piece(dimension))
-        }),
-    };
-    let placed = matches!(
-        shape_item.as_ref().and_then(Item::word),
-        Some("points" | "mesh" | "solid" | "outline")
-    );
-    let origin = match placed {
-        true => table.maybe("origin", |item| item.vector(Quantity::Length, dimension)),
-        false => Some(None),
-    };
-    let material = table.maybe("material", |item| item.text());
-    let velocity = table.maybe("velocity", |item| {
-        item.vector(Quantity::Velocity, dimension)
+/// Scope of the keys of a piece.
+#[derive(Clone, Copy)]
+pub(super) struct PieceScope {
+    /// Dimension of the shape; none if another key states it.
+    pub(super) dimension: Option<usize>,
+    /// Whether it is a table of `[[body.piece]]`.
+    pub(super) is_further: bool,
+    /// Whether `[body]` has further pieces.
+    pub(super) has_further: bool,
+}
+
+impl Spatial for PieceScope {
+    fn dimension(&self) -> Option<usize> {
+        self.dimension
+    }
+}
+
+/// A piece as far as it could be read.
+pub(super) struct PieceRead<'a> {
+    name: Option<Item<'a>>,
+    shape: Option<Item<'a>>,
+    keys: Option<PieceKeys>,
+    read: BodyRead,
+    /// Position of the origin of a file's coordinates, m.
+    origin: [f64; 3],
+}
+
+const PIECES: &str = "Further pieces of the body, each with the keys of `[body]`. No bond joins points of different pieces; they interact by `[contact]`. `spacing`, `thickness`, `area` and `plane` are taken from `[body]` if omitted. The points form one grid if all pieces lie on the cells of one lattice, otherwise a neighbour list is used. Points of different pieces must be at least half a cell apart; points one cell apart touch.";
+
+/// Reads `[body]` with its further pieces; `shape` reads the keys of a shape.
+pub(super) fn read<'a>(
+    table: Table<'a>,
+    shape: impl Fn(&Table<'a>, bool) -> (BodyRead, [f64; 3]) + Copy,
+) -> BodyRead {
+    table.describe("piece", PIECES);
+    let tables = table.tables("piece");
+    let has_further = !tables.is_empty();
+    let others = tables.into_iter().map(|table| {
+        table.define("body");
+        table.forbid("piece", "pieces are listed in [[body.piece]]");
+        one(table, [true, false], shape)
     });
-    let read = shape(table);
-    let rest = (|| {
-        Some(Rest {
-            name: name(name_item.as_ref()?)?,
-            origin: origin?.unwrap_or_default(),
-            rotation: rotation?,
-            material: material?,
-            velocity: velocity?,
-        })
-    })();
+    let others: Vec<PieceRead<'_>> = others.collect();
+    join(one(table, [false, has_further], shape), others)
+}
+
+fn one<'a>(
+    table: Table<'a>,
+    [is_further, has_further]: [bool; 2],
+    shape: impl Fn(&Table<'a>, bool) -> (BodyRead, [f64; 3]),
+) -> PieceRead<'a> {
+    let word = table.optional("shape");
+    let dimension = word.as_ref().and_then(Item::word);
+    let dimension = dimension.and_then(GivenShape::dimension);
+    let scope = PieceScope {
+        dimension,
+        is_further,
+        has_further,
+    };
+    let keys = PieceKeys::read_keys(&table, scope);
+    let name = table.read_before("name");
+    let (read, origin) = shape(&table, is_further);
+    table.finish();
     PieceRead {
-        name: name_item,
-        shape: shape_item,
+        name,
+        shape: word,
+        keys,
         read,
-        rest,
+        origin,
     }
 }
 
 /// Reads the name of a piece, also the name of a set.
-fn name(item: &Item<'_>) -> Option<String> {
+fn name(item: &Item<'_>, _: PieceScope) -> Option<String> {
     let name = item.text()?;
     match bad_name(&name) {
         Some(fault) => {
@@ -119,58 +138,55 @@ fn name(item: &Item<'_>) -> Option<String> {
     }
 }
 
-impl Pieces<'_> {
-    /// Returns the names of all pieces, `[body]` first; empty for a body of one piece.
-    pub(super) fn names(&self) -> Vec<String> {
-        let others = self.others.iter();
-        let others = others.filter_map(|piece| piece.name.as_ref()?.word());
-        let main = self.main.iter().map(String::as_str);
-        main.chain(others).map(String::from).collect()
-    }
+fn check_name(name: &str, path: &KeyPath, _: PieceScope, check: &mut Check) {
+    let allowed = "allowed: a name of letters, digits, - and _ that is not reserved";
+    check.within(bad_name(name).is_none(), path.key("name"), name, allowed);
+}
 
-    /// Adds the pieces to the body that `[body]` describes.
-    pub(super) fn join(self, mut read: BodyRead) -> BodyRead {
-        if self.others.is_empty() {
-            return read;
-        }
-        read.pieces = self.names();
-        let mut known: Vec<&str> = self.main.iter().map(String::as_str).collect();
-        let mut right = true;
-        for piece in &self.others {
-            if let Some(item) = &piece.name
-                && let Some(name) = item.word()
-            {
-                if known.contains(&name) {
-                    item.report(Fault::BadName {
-                        name: name.into(),
-                        reason: "another piece has this name",
-                        allowed: "allowed: a name that no other piece has",
-                    });
-                    right = false;
-                }
-                known.push(name);
-            }
-            right &= piece.fits(&read);
-        }
-        read.frame.mesh |= self.others.iter().any(|piece| piece.read.frame.mesh);
-        let shape = read.shape.take().filter(|_| right);
-        read.shape = (|| {
-            let mut pieces = vec![Piece::new(self.main?, shape?)];
-            for PieceRead { read, rest, .. } in self.others {
-                let rest = rest?;
-                pieces.push(Piece {
-                    name: rest.name,
-                    shape: read.shape?,
-                    origin: rest.origin,
-                    rotation: rest.rotation,
-                    material: rest.material,
-                    velocity: rest.velocity,
-                });
-            }
-            Some(SolidShape::Pieces(pieces))
-        })();
-        read
+/// Adds further pieces to the piece of `[body]`.
+fn join(main: PieceRead<'_>, others: Vec<PieceRead<'_>>) -> BodyRead {
+    let mut read = main.read;
+    if others.is_empty() {
+        return read;
     }
+    let main_name = main.keys.map(|keys| keys.name);
+    let mut known: Vec<&str> = main_name.iter().map(String::as_str).collect();
+    let mut right = true;
+    for piece in &others {
+        if let Some(item) = &piece.name
+            && let Some(name) = item.word()
+        {
+            if known.contains(&name) {
+                item.report(Fault::BadName {
+                    name: name.into(),
+                    reason: "another piece has this name",
+                    allowed: "allowed: a name that no other piece has",
+                });
+                right = false;
+            }
+            known.push(name);
+        }
+        right &= piece.fits(&read);
+    }
+    read.pieces = known.into_iter().map(String::from).collect();
+    read.frame.mesh |= others.iter().any(|piece| piece.read.frame.mesh);
+    let shape = read.shape.take().filter(|_| right);
+    read.shape = (|| {
+        let mut pieces = vec![Piece::new(main_name?, shape?)];
+        for piece in others {
+            let keys = piece.keys?;
+            pieces.push(Piece {
+                name: keys.name,
+                shape: piece.read.shape?,
+                origin: piece.origin,
+                rotation: keys.rotation,
+                material: keys.material,
+                velocity: keys.velocity,
+            });
+        }
+        Some(SolidShape::Pieces(pieces))
+    })();
+    read
 }
 
 impl PieceRead<'_> {

@@ -5,8 +5,13 @@ use pericles::material::StressState;
 use crate::quantity::Quantity;
 use crate::reader::Table;
 
+const AREA: &str = "Bar: cross-sectional area. With 1 m², the default, forces, energies, momenta and masses are reported per square metre (N/m2, J/m2).";
+const THICKNESS: &str = "Thickness of a plate, disc, outline or plane mesh. With 1 m, the default, forces, energies, momenta and masses are reported per metre of thickness (N/m, J/m).";
+
 /// Reads the area of a bar or the thickness of a plate; 1 in 3D.
 pub(super) fn section(table: &Table<'_>, dimension: Option<usize>) -> Option<f64> {
+    table.describe("area", AREA);
+    table.describe("thickness", THICKNESS);
     let Some(dimension) = dimension else {
         table.know(&["area", "thickness"]);
         return None;
@@ -24,7 +29,12 @@ pub(super) fn section(table: &Table<'_>, dimension: Option<usize>) -> Option<f64
     }
 }
 
+/// Reads the stress state.
 pub(super) fn state(table: &Table<'_>, dimension: Option<usize>) -> Option<StressState> {
+    table.describe(
+        "plane",
+        "Plane stress or plane strain. Required for 2D bodies.",
+    );
     let Some(dimension) = dimension else {
         table.know(&["plane"]);
         return None;

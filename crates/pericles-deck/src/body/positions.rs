@@ -1,6 +1,6 @@
-//! Positions of points: on a lattice or random.
+//! Positions of points: on a lattice or random, one or two in each cell.
 
-use pericles_deck_derive::DeckKeys;
+use pericles_deck_derive::{DeckKeys, DeckWords};
 use serde::{Deserialize, Serialize};
 
 use crate::range::{Range, between};
@@ -41,3 +41,15 @@ impl Positions {
 }
 
 const JITTERS: Range = between(0.0, 0.5).described("a number of spacings above 0 and below 0.5");
+
+/// Quadrature points of cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
+#[serde(rename_all = "snake_case")]
+#[deck(what = "quadrature")]
+pub enum Quadrature {
+    /// One point at the centre.
+    #[default]
+    Midpoint,
+    /// The two Gauss nodes of a cell of a bar.
+    Gauss,
+}

@@ -98,7 +98,7 @@ pub struct FilledShape {
     /// Thickness of a 2D body (m); 1 in 3D.
     #[deck(flatten, with = section, keys("area", "thickness"), scope = Some(scope))]
     pub section: f64,
-    /// Regions without material.
+    /// Regions without material. Any number of tables.
     #[serde(default, rename = "hole", with = "crate::form")]
     #[deck(key = "hole", scope = frame(scope, spacing))]
     pub holes: Vec<Region>,

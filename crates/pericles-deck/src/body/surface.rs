@@ -6,7 +6,6 @@ use pericles_deck_derive::{DeckKeys, DeckTable};
 use pericles_manifold::surface::{AreaRule, Surface, SurfaceChecks, SurfaceError};
 use serde::{Deserialize, Serialize};
 
-use crate::declaration::DeckKeys;
 use crate::form::described;
 use crate::quantity::Quantity;
 use crate::range::{Range, count_to};
@@ -238,22 +237,29 @@ impl SurfaceFormula {
     }
 }
 
-/// Reads the shape of `[body]`, with the mean distance of its vertices unless it comes from a file.
-pub(super) fn shape(table: &Table<'_>, is_file: bool) -> Option<(SurfaceShape, Option<f64>)> {
-    if is_file {
-        let file = SurfaceFile::read_keys(table, ())?;
-        return Some((SurfaceShape::File(file), None));
-    }
-    let shape = SurfaceFormula::read_keys(table, Frame::of_model(3))?;
-    let spacing = table.accept(shape.spacing().map_err(Into::into))?;
-    Some((SurfaceShape::Formula(shape), Some(spacing)))
+/// Returns a surface with the mean distance of its vertices, unless it comes from a file.
+pub(super) fn with_spacing(
+    table: &Table<'_>,
+    shape: SurfaceShape,
+) -> Option<(SurfaceShape, Option<f64>)> {
+    let spacing = match &shape {
+        SurfaceShape::File(_) => None,
+        SurfaceShape::Formula(formula) => {
+            Some(table.accept(formula.spacing().map_err(Into::into))?)
+        }
+    };
+    Some((shape, spacing))
 }
 
+const AREAS: &str = "2-manifolds: how triangle areas are distributed to vertices, or one area for all vertices. `barycentric`: a third to each corner; `mixed-voronoi`: Voronoi areas, modified in obtuse triangles (Meyer et al. 2003).";
+
+/// Reads the areas of the vertices.
 pub(super) fn areas(table: &Table<'_>) -> Option<VertexAreas> {
     const RULES: [(&str, VertexAreas); 2] = [
         ("barycentric", VertexAreas::Rule(AreaRule::Barycentric)),
         ("mixed-voronoi", VertexAreas::Rule(AreaRule::MixedVoronoi)),
     ];
+    table.describe("areas", AREAS);
     match table.optional("areas") {
         None => {
             table.record("areas", RULES[0].0);

@@ -6,7 +6,7 @@ use pericles::material::StressState;
 use pericles::space::{Finer, Grid, Region};
 use serde::{Deserialize, Serialize};
 
-use super::positions::Positions;
+use super::positions::{Positions, Quadrature};
 use super::rotation::Rotation;
 use super::sources::{FilledShape, MeshFile, PointsFile};
 use super::surface::{SurfaceShape, VertexAreas};
@@ -111,6 +111,18 @@ impl SolidShape {
                 };
                 pieces.iter().any(Piece::is_listed) || pieces.windows(2).any(differ)
             }
+        }
+    }
+
+    /// Returns whether all cells of a lattice are squares or cubes of one size.
+    pub(crate) fn has_equal_cells(&self) -> bool {
+        match self {
+            Self::Lattice(lattice) => {
+                lattice.rectangular.is_none() && !lattice.positions.are_random()
+            }
+            Self::Filled(filled) => filled.is_on_lattice(),
+            Self::Points(_) => true,
+            Self::Mesh(_) | Self::Pieces(_) => false,
         }
     }
 
@@ -254,17 +266,6 @@ impl Piece {
     pub fn is_listed(&self) -> bool {
         self.rotation.is_some() || self.shape.is_listed()
     }
-}
-
-/// Quadrature points of cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Quadrature {
-    /// One point at the centre.
-    #[default]
-    Midpoint,
-    /// The two Gauss nodes of a cell of a bar.
-    Gauss,
 }
 
 /// Properties of a body that other tables need; none if they could not be read.

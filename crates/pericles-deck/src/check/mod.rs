@@ -1,17 +1,19 @@
 //! Range checks of models made by programs. Decks are checked while they are read.
 //!
-//! Declared tables have their checks ([`crate::declaration`]); the others have checks written by hand here.
+//! Declared tables have their checks ([`crate::declaration`]); rules that decks satisfy by their form are next to the types.
 
-mod body;
 mod contact;
+
+use pericles::material::StressState;
 
 use crate::assign::{AssignScope, Assignable};
 use crate::crack::CrackScope;
 use crate::declaration::{Check, DeckValue};
 use crate::exact::ExactScope;
 use crate::key_path::KeyPath;
-use crate::model::{Body, Model};
+use crate::model::{Body, Model, Solid};
 use crate::output::OutputScope;
+use crate::range::POSITIVE;
 use crate::region::Frame;
 use crate::remark::BuildError;
 use crate::scope::Scope;
@@ -25,10 +27,9 @@ impl Model {
     /// All numbers out of range, with their keys.
     pub fn check(&self) -> Result<(), BuildError> {
         let mut check = Check::default();
-        let body = KeyPath::from("body");
         match &self.body {
-            Body::Solid(solid) => check.solid(&body, solid),
-            Body::Surface(surface) => check.surface(surface),
+            Body::Solid(solid) => solid.check(&mut check),
+            Body::Surface(surface) => surface.check(&mut check),
         }
         check.several(self);
         let frame = Frame::of_model(self.body.dimension());
@@ -59,7 +60,53 @@ impl Model {
     }
 }
 
+impl Solid {
+    /// Checks the shape, the stress state and the material of a body.
+    fn check(&self, check: &mut Check) {
+        let path = KeyPath::from("body");
+        self.shape.check(&path, check);
+        let dimension = self.shape.dimension();
+        let right = (1..=3).contains(&dimension);
+        let allowed = "allowed: 1, 2 or 3";
+        check.within(right, path.key("dimension"), dimension, allowed);
+        if !right {
+            return;
+        }
+        let section = ["area", "thickness"].get(dimension - 1);
+        let section = section.map_or(path.clone(), |key| path.key(key));
+        check.number(section, self.shape.section(), POSITIVE);
+        let fits = match self.state {
+            StressState::Uniaxial => dimension == 1,
+            StressState::PlaneStress | StressState::PlaneStrain => dimension == 2,
+            StressState::Spatial => dimension == 3,
+        };
+        let allowed = "allowed: uniaxial in one dimension, plane stress or plane strain in two, spatial in three";
+        check.within(fits, path.key("plane"), self.state.name(), allowed);
+        self.material.check(self.state, dimension, check);
+    }
+}
+
 impl Check {
+    /// Checks further materials, assignments and interfaces.
+    fn several(&mut self, model: &Model) {
+        let (solid, dimension) = (model.body.solid(), model.body.dimension().clamp(1, 3));
+        let own = solid.map(|solid| solid.material.name());
+        let others = model.materials.iter().map(|other| other.name.as_str());
+        let names: Vec<&str> = own.into_iter().chain(others).collect();
+        let allowed = "allowed: the name of a material of the body";
+        for (path, _, name) in model.assigned_materials() {
+            self.within(names.contains(&name), path, name, allowed);
+        }
+        let Some(solid) = solid else { return };
+        for other in &model.materials {
+            other.check(&solid.material.model, solid.state, dimension, self);
+        }
+        for (k, interface) in model.interfaces.iter().enumerate() {
+            let path = KeyPath::from("interface").index(k);
+            interface.check(&path, &names, solid.state, self);
+        }
+    }
+
     /// Checks the declared tables.
     fn declared(&mut self, model: &Model, scope: Scope<'_>) {
         if let Some(thermal) = &model.thermal {

@@ -36,13 +36,23 @@ mod values;
 pub(crate) use check::Check;
 pub(crate) use values::Measured;
 
+pub(crate) use crate::reader::Group;
+
 use crate::key_path::KeyPath;
 use crate::reader::{Item, Table};
 
 /// A type that is read from keys of a table.
 pub(crate) trait Keyed {
+    /// Name of the definition of the table in the schema, if several keys share it.
+    const DEFINITION: Option<&'static str> = None;
+
     /// Returns all its keys.
     fn keys() -> Vec<&'static str>;
+
+    /// Returns the groups of keys that a word of the tag of an enum selects; all keys of other types.
+    fn groups(_: &str) -> Vec<Group> {
+        vec![(Self::keys(), None)]
+    }
 }
 
 /// Keys in a table, which may have further keys.
@@ -71,12 +81,9 @@ pub(crate) trait DeckChoice<S>: Exclusive + Sized {
 }
 
 /// A complete table.
-pub(crate) trait DeckTable<S>: DeckKeys<S> {
+pub(crate) trait DeckTable<S>: DeckKeys<S> + Keyed {
     /// Description of the table.
     const ABOUT: &'static str;
-
-    /// Name of the definition of the table in the schema, if several keys share it.
-    const DEFINITION: Option<&'static str> = None;
 
     /// The key whose texts are unique in a list of tables, with the fault of a text that another table has.
     const UNIQUE: Option<Unique> = None;

@@ -1,5 +1,6 @@
 //! One field gives reader, default, range check, record and description of a key.
 
+use pericles::material::StressState;
 use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
 
 use super::{Check, DeckKeys, DeckTable, Exclusive, Keyed};
@@ -208,4 +209,106 @@ fn the_first_paragraph_of_the_documentation_describes_a_key() {
     assert!(found.contains(&(None, "Spring.".into())), "{found:?}");
     assert!(found.contains(&(Some("stiffness"), "Stiffness k of the spring.".into())));
     assert!(found.contains(&(Some("law"), "Force law.".into())));
+}
+
+/// Plate on a spring.
+#[derive(Debug, PartialEq, DeckTable)]
+#[deck(at_most_one("rate", "period"))]
+struct Plate {
+    /// Poisson's ratio, which the engine checks.
+    #[deck(quantity = Number, accept = of_bonds)]
+    ratio: f64,
+    /// Whether a spring supports the plate.
+    #[deck(default = true)]
+    supported: bool,
+    #[deck(
+        flatten,
+        default = Force::Linear,
+        forbid_if(supported == Some(&false), "a plate without support has no spring")
+    )]
+    force: Force,
+    /// Rate of the load.
+    #[deck(quantity = Rate)]
+    rate: Option<f64>,
+    /// Period of the load.
+    #[deck(quantity = Time)]
+    period: Option<f64>,
+}
+
+fn of_bonds<S>(ratio: &f64, _: S) -> pericles::Result<()> {
+    StressState::PlaneStrain.check_poisson_ratio(*ratio)
+}
+
+#[test]
+fn the_engine_checks_values_and_all_keys_of_a_flattened_field_may_be_forbidden() {
+    for (text, expected) in [
+        ("ratio = 0.3", "one elastic constant"),
+        (
+            "ratio = 0.25\nsupported = false\nlaw = \"linear\"",
+            "`law` is not allowed",
+        ),
+        (
+            "ratio = 0.25\nsupported = false\nexponent = 2",
+            "`exponent` is not allowed",
+        ),
+        (
+            "ratio = 0.25\nrate = 1\nperiod = 1",
+            "`rate` and `period` are given together",
+        ),
+    ] {
+        let (_, closed) = read_as::<Plate>(text);
+        let [problem] = &closed.problems[..] else {
+            panic!("{text}: {} problems", closed.problems.len());
+        };
+        assert!(problem.to_string().contains(expected), "{text}: {problem}");
+    }
+    let (plate, _) = read_as::<Plate>("ratio = 0.25\nlaw = \"power\"\nexponent = 2\nrate = 1");
+    let plate = plate.unwrap();
+    assert_eq!(plate.force, Force::Power { exponent: 2.0 });
+    let mut check = Check::default();
+    let wrong = Plate {
+        ratio: 0.3,
+        ..plate
+    };
+    wrong.check_keys(&KeyPath::from("plate"), (), &mut check);
+    assert_eq!(check.problems.len(), 1);
+    assert!(check.problems[0].line().starts_with("plate.ratio: "));
+}
+
+/// Support.
+#[derive(Debug, PartialEq, DeckKeys)]
+#[deck(tag = "law", what = "support")]
+enum Supported {
+    Linear(#[deck(flatten)] Force),
+    Power(#[deck(flatten)] Force),
+    Free {
+        /// Distance of the stop.
+        #[deck(quantity = Length, otherwise = "a spring has no stop")]
+        stop: f64,
+    },
+}
+
+#[test]
+fn a_variant_may_be_an_enum_with_the_same_tag() {
+    let (read, _) = read_as::<Supported>("law = \"power\"\nexponent = 2");
+    let power = Force::Power { exponent: 2.0 };
+    assert_eq!(read, Some(Supported::Power(power)));
+    for (text, expected) in [
+        (
+            "law = \"free\"\nstop = 1\nexponent = 2",
+            "it requires law = \"power\"",
+        ),
+        ("law = \"linear\"\nstop = 1", "a spring has no stop"),
+        (
+            "law = \"linear\"\nexponent = 2",
+            "it requires law = \"power\"",
+        ),
+    ] {
+        let (_, closed) = read_as::<Supported>(text);
+        let [problem] = &closed.problems[..] else {
+            panic!("{text}: {} problems", closed.problems.len());
+        };
+        let line = problem.line();
+        assert!(line.ends_with(expected), "{text}: {line}");
+    }
 }

@@ -146,14 +146,28 @@ macro_rules! recorded {
 
 recorded!(f64, bool, u32, u64, String);
 
-/// Zero is not recorded, because the dimension of the body determines the number of components; no bound is not recorded
-/// either.
-impl<S> Fallback<S> for [f64; 3] {
-    fn missing(self, table: &Table<'_>, key: &'static str, _: S) -> Option<Self> {
-        if self != [0.0; 3] && self.iter().all(|x| x.is_finite()) {
-            table.record(key, self.to_vec());
+/// Records one component per dimension of the body; infinite bounds are not recorded.
+impl<S: Spatial> Fallback<S> for [f64; 3] {
+    fn missing(self, table: &Table<'_>, key: &'static str, scope: S) -> Option<Self> {
+        if self.iter().all(|x| x.is_finite()) {
+            let dimension = scope.dimension().unwrap_or(3);
+            table.record(key, self[..dimension].to_vec());
         }
         Some(self)
+    }
+}
+
+/// Space, for vectors that do not depend on the dimension of the body.
+impl Spatial for () {
+    fn dimension(&self) -> Option<usize> {
+        Some(3)
+    }
+}
+
+/// The dimension itself.
+impl Spatial for Option<usize> {
+    fn dimension(&self) -> Option<usize> {
+        *self
     }
 }
 

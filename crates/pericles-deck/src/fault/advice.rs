@@ -43,23 +43,6 @@ impl Subject for Fault {
             Self::NothingPrescribed => {
                 "set a number for at least one component, or remove the table".into()
             }
-            Self::EmptySet { advice, .. } => advice.clone(),
-            Self::OverlappingPieces { .. } => {
-                "move one of them: points of different pieces must be at least half of a cell apart; points one cell apart touch".into()
-            }
-            Self::PrescribedTwice { .. } => {
-                "choose other points, set this component to \"free\", or give both tables the same value, function and `until`".into()
-            }
-            Self::ThinFineSet { .. } => {
-                "make the set thicker along this axis, or extend it to the surface of the body".into()
-            }
-            Self::FineSetsOverlap { .. } => "define one set that is the union of both".into(),
-            Self::EmptyMaterial { .. } => {
-                "later assignments replace all of its points: put the larger set first".into()
-            }
-            Self::NoMaterial { .. } => {
-                "assign one with [[assign]], or define [materials.default] for all points without an assignment".into()
-            }
             Self::NotShared { .. } => {
                 "materials of a body may differ in density, elastic constants, failure and, if bond-based, horizon; set all other keys once, in [material]".into()
             }
@@ -67,55 +50,17 @@ impl Subject for Fault {
                 (*allowed).into()
             }
             Self::TwoCourses { .. } => "remove `function`".into(),
-            Self::BadSurfaceFile { .. } => {
-                "a surface must be closed, connected and consistently oriented, unless open, several or flip = true; `pericles geodesics FILE` reports details".into()
-            }
-            Self::LostValue { .. } => "change the expression, or end the run or the load (`until`) earlier; the expression, and for motions its derivatives, must be finite throughout the run".into(),
-            Self::NeverStops { .. } => {
-                "reaction_below needs a set with a [[constraint]], damage_above a material with fracture".into()
-            }
             Self::UnknownArea { .. } => "set `area`, such as \"100 mm2\"".into(),
             Self::NoFields { .. } => "remove these fields".into(),
             Self::NoExactSolution { .. } => "remove [exact], or change the deck".into(),
-            Self::EmptyWindow { .. } => {
-                "use a larger window, or move the centre of the exact solution into the body".into()
-            }
-            Self::LongSum { .. } => {
-                "move exact.centre into the body, use a larger width, or shorten the run; the number of terms is 2 (distance from the centre + 6 c end)/width".into()
-            }
-            Self::BadPoints { .. } => {
-                "expected: one line `x y z block volume` per point, in m and m³; a relative path starts at the deck's folder".into()
-            }
             Self::BadMesh { .. } => {
                 "`pericles mesh FILE --unit UNIT` lists the contents of a file; a relative path starts at the deck's folder".into()
-            }
-            Self::OtherDimension { found, .. } => format!(
-                "set dimension = {found}; surface elements of a solid mesh only define sets"
-            ),
-            Self::OtherElementSize { .. } => {
-                "remove `spacing` to use the mean element size, or correct `unit`".into()
             }
             Self::NoFaces { .. } => {
                 "allowed: a face set of a mesh, or a `layer`; use a `traction` with `area` for other sets".into()
             }
-            Self::BadCrackFile { .. } => {
-                "expected: a file of triangles (STL, OBJ, PLY, OFF, Gmsh, VTU or VTP); a relative path starts at the deck's folder".into()
-            }
             Self::LargeFile { .. } => {
                 "use a smaller file; the limit is the free memory of the machine, or the given limit".into()
-            }
-            Self::BadTemperatureFile { points, .. } => format!(
-                "expected: one line for each of the {points} points, in the order of the field files (listed points: of their file), with the temperature in K; a relative path starts at the deck's folder"
-            ),
-            Self::BadInitialFile { points, .. } => format!(
-                "expected: one line for each of the {points} points, in the order of the field files (listed points: of their file), with displacement components in m, then velocity components in m/s; a relative path starts at the deck's folder"
-            ),
-            Self::OtherSpacing { section: Some(section), .. } => format!(
-                "check `spacing`, and the units of the file: coordinates in m, volumes in m³; `{section}` is part of the volumes"
-            ),
-            Self::OtherSpacing { .. } => "check `spacing`, and the units of the file: coordinates in m, volumes in m³".into(),
-            Self::UnstableTable { .. } => {
-                "use lower_bound = \"auto\" (the default), or another method, decay or horizon; time.allow_unstable = true accepts the deck for `pericles dispersion`".into()
             }
             Self::TooLarge { .. } => {
                 "use a larger spacing or a smaller horizon; check lengths and their unit (default: m)".into()
@@ -127,6 +72,7 @@ impl Subject for Fault {
             Self::TooManyProcesses { .. } => {
                 "use fewer processes; parts of a lattice are boxes of whole cells".into()
             }
+            Self::Other { advice, .. } => advice.clone(),
             // The message says what is allowed.
             Self::WrongKind { .. } | Self::BadDiscretisation { .. } | Self::Model(_) => {
                 return None;
@@ -146,9 +92,7 @@ impl Subject for Fault {
             } => "typo?",
             Self::UnknownKey { .. } | Self::UnknownWord { .. } => "unknown",
             Self::MissingKey { .. } | Self::MissingChoice { .. } => "incomplete",
-            Self::Exclusive { .. } | Self::TwoCourses { .. } | Self::PrescribedTwice { .. } => {
-                "conflict"
-            }
+            Self::Exclusive { .. } | Self::TwoCourses { .. } => "conflict",
             Self::Misplaced { .. } => "not allowed here",
             Self::WrongKind { .. } => "wrong type",
             Self::NotANumber { .. } => "not a number",
@@ -157,39 +101,24 @@ impl Subject for Fault {
             Self::WrongUnit { .. } => "wrong unit",
             Self::OutOfRange { .. } => "out of range",
             Self::WrongLength { .. } => "wrong length",
-            Self::OtherSpacing { .. } | Self::OtherElementSize { .. } => "different size",
-            Self::OtherDimension { .. } => "different dimension",
             Self::NoFaces { .. } => "no faces",
             Self::BadName { .. }
             | Self::BadExpression { .. }
             | Self::BadCondition { .. }
-            | Self::BadPoints { .. }
-            | Self::BadMesh { .. }
-            | Self::BadCrackFile { .. }
-            | Self::BadInitialFile { .. }
-            | Self::BadTemperatureFile { .. }
-            | Self::BadSurfaceFile { .. } => "invalid",
+            | Self::BadMesh { .. } => "invalid",
             Self::NothingPrescribed => "all components free",
             Self::BadOverride { .. } => "invalid override",
-            Self::EmptySet { .. } | Self::EmptyMaterial { .. } => "no points",
-            Self::NoMaterial { .. } => "incomplete",
             Self::NotShared { .. } => "differs",
             Self::BadDiscretisation { .. } => "inconsistent",
             Self::Undivided { .. } => "not divisible",
             Self::TooManyProcesses { .. } => "too small",
-            Self::LostValue { .. } => "not finite",
-            Self::NeverStops { .. } => "never met",
-            Self::ThinFineSet { .. } => "too thin",
-            Self::FineSetsOverlap { .. } | Self::OverlappingPieces { .. } => "overlap",
             Self::UnknownArea { .. } => "unknown area",
             Self::NoFields { .. } => "not available",
             Self::NoExactSolution { .. } => "does not apply",
-            Self::EmptyWindow { .. } => "no points",
-            Self::LongSum { .. } => "too many terms",
             Self::TooLarge { .. } | Self::LongHistory { .. } | Self::LargeFile { .. } => {
                 "too large"
             }
-            Self::UnstableTable { .. } => "unstable",
+            Self::Other { label, .. } => label,
             Self::Model(_) => "invalid",
         }
     }

@@ -1,154 +1,75 @@
-//! Reads bond-based materials.
+//! Keys of bond-based materials.
 
-use pericles::material::{Approximation, BondMaterial, CubicLaw, PairLaw};
+use pericles::material::{Approximation, CubicLaw, Modulus, PairLaw, SurfaceCorrection};
+use pericles_deck_derive::{DeckTable, DeckWords};
 
-use super::keys::{damage, density, form, horizon, no_fail, setting, volume_correction};
-use super::scatter::Scatter;
-use super::softening::{
-    failure, forbid_failure, forbid_softening, forbid_tensile_strength, softening, tensile_strength,
-};
-use super::types::{Material, MaterialModel};
-use crate::body::BodyRead;
-use crate::constants::{
-    ConstantRules, Sums, fracture, fracture_calibration, modulus, poisson_ratio,
-};
-use crate::correspondence;
-use crate::declaration::DeckValue;
-use crate::influence::influence;
-use crate::property::MaterialFunctions;
-use crate::reader::Table;
-use crate::set::SetNames;
-use crate::vocabulary::BY_STATE;
+use super::scope::{BAR, MaterialScope};
 
-pub(super) fn read(
-    table: Table<'_>,
-    law: Option<PairLaw>,
-    body: &BodyRead,
-    sets: &SetNames,
-    shared: bool,
-) -> Option<Material> {
-    correspondence::forbid_keys(&table);
-    for (_, key) in BY_STATE {
-        table.forbid(
-            key,
-            "it requires model = \"state-based\" or \"correspondence\", whose points have a stress",
-        );
-    }
-    for key in ["yield_stress", "hardening"] {
-        table.forbid(
-            key,
-            "it requires model = \"state-based\" or \"correspondence\"",
-        );
-    }
-    for key in ["strains", "stretch_definition", "viscosity"] {
-        table.forbid(key, "it requires model = \"state-based\"");
-    }
-    let dimension = body.frame.dimension;
-    let name = table.maybe("name", |item| item.text());
-    let law = approximated(&table, law);
-    let density = density(&table);
-    let modulus = modulus(&table, body.state);
-    let extent = horizon(&table, body.frame);
-    let volume_correction = volume_correction(&table);
-    let surface_correction = table.worded("surface_correction", "surface correction");
-    poisson_ratio(&table, body.state);
-    let setting = setting(body, extent.as_ref(), volume_correction);
-    let (influence, tuned) = influence(&table, &setting).unwrap_or_default();
-    let horizon = extent.and_then(|extent| extent.with(influence.as_ref(), dimension));
-    let fracture = fracture(&table);
-    let fracture_calibration = fracture_calibration(&table, body, shared);
-    let no_fail = no_fail(&table, sets);
-    let scatter = table.maybe("scatter", |item| Scatter::read(&item, ()));
-    let (surface, softening, tensile_strength) = match law {
-        None | Some(PairLaw::Linear | PairLaw::BondStretch) => {
-            let surface = failure(&table, dimension);
-            let chosen = surface.as_ref().and_then(Option::as_ref);
-            let softening = softening(&table, chosen);
-            let strength = match surface {
-                // Without the criterion it is unknown whether the key belongs to the material.
-                None => table.maybe("tensile_strength", |_| None),
-                Some(_) => tensile_strength(&table, softening, chosen, fracture_calibration),
-            };
-            (surface, softening, strength)
-        }
-        Some(_) => {
-            forbid_failure(&table);
-            forbid_softening(&table);
-            forbid_tensile_strength(&table);
-            (Some(None), Some(None), Some(None))
-        }
-    };
-    let damage = damage(&table);
-    let form = form(&table);
-    let functions = MaterialFunctions::read(&table, body.frame.dimension);
-    let rules = ConstantRules {
-        state: body.state,
-        sums: Sums::of(influence.as_ref(), form, body),
-        fracture: fracture_calibration,
-    };
-    rules.check_volume_correction(&table);
-    let modulus = rules.modulus(&table, modulus);
-    let fracture = rules.fracture(fracture);
-    table.finish();
-    Some(Material {
-        name: name?,
-        is_default: true,
-        model: MaterialModel::Bonds(BondMaterial {
-            law: law?,
-            density: density?,
-            modulus: modulus?,
-            horizon: horizon?,
-            influence: influence?,
-            volume_correction: volume_correction?,
-            fracture: fracture?,
-        }),
-        tuned,
-        functions: functions?,
-        no_fail: no_fail?,
-        scatter: scatter?,
-        softening: softening?,
-        tensile_strength: tensile_strength?,
-        strength_surface: surface?,
-        surface_correction: surface_correction?,
-        damage: damage?,
-        form: form?,
-    })
+/// Elastic constants of a bond-based material.
+#[derive(DeckTable)]
+#[deck(scope = MaterialScope<'s>)]
+pub(super) struct BondKeys {
+    #[deck(flatten, scope = scope.state())]
+    pub(super) modulus: Modulus,
+    /// Poisson's ratio ν. state-based, correspondence: free. Bond-based: if given, it must be the value that bond-based models
+    /// have: 1/3 in plane stress, 1/4 in plane strain and 3D. Not for bars.
+    #[deck(quantity = Number, accept = ratio, forbid_if(scope.is_bar(), BAR))]
+    poisson_ratio: Option<f64>,
+    /// Stiffening of bonds near free surfaces, where bonds are missing. `volume`: one factor per point from the missing volume
+    /// within its horizon; `energy`: direction-dependent factors from the energy in uniaxial tension along three axes that
+    /// follow the surface; `ghosts`: families completed by ghost points in the free cells of the lattice, whose displacements
+    /// are extrapolated from those of the body, for bodies on a lattice whose bonds do not break. state-based: `none`,
+    /// `energy`, which corrects the deviatoric stiffness, or `ghosts`; `volume` is rejected because the weighted volume already
+    /// accounts for missing bonds.
+    #[deck(
+        default,
+        otherwise = "the shape tensor of a correspondence material already accounts for missing bonds near free surfaces"
+    )]
+    pub(super) surface_correction: SurfaceCorrection,
 }
 
-/// Applies `approximation` to the law.
-fn approximated(table: &Table<'_>, law: Option<PairLaw>) -> Option<PairLaw> {
-    #[derive(Clone, Copy)]
-    enum Kind {
-        Exact,
-        FirstOrder,
-        As(Approximation),
+fn ratio(ratio: &f64, scope: MaterialScope<'_>) -> pericles::Result<()> {
+    match scope.state() {
+        Some(state) => state.check_poisson_ratio(*ratio),
+        None => Ok(()),
     }
-    let cubic = match law? {
-        PairLaw::GreenStrain => CubicLaw::GreenStrain,
-        PairLaw::CubicSoftening => CubicLaw::CubicSoftening,
-        other => {
-            table.forbid(
-                "approximation",
-                "it requires model = \"green-strain\" or \"cubic-softening\"",
-            );
-            return Some(other);
+}
+
+/// Approximation of a cubic law.
+#[derive(DeckTable)]
+pub(super) struct CubicKeys {
+    /// green-strain and cubic-softening on bars: approximation of the force law in the relative displacement. `exact` and
+    /// `taylor-3`: the law itself, a cubic polynomial; `taylor-1`, `taylor-2`: Taylor polynomials of lower order;
+    /// `trapezoidal`: mean of the tangents in the reference and the current configuration.
+    #[deck(default = Given::Exact)]
+    approximation: Given,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, DeckWords)]
+#[deck(what = "approximation")]
+enum Given {
+    Exact,
+    #[deck(word = "taylor-1")]
+    First,
+    #[deck(word = "taylor-2")]
+    Second,
+    #[deck(word = "taylor-3")]
+    Third,
+    Trapezoidal,
+}
+
+impl CubicKeys {
+    /// Returns the approximation of a law.
+    pub(super) fn law(self, law: CubicLaw) -> PairLaw {
+        match self.approximation {
+            // The law is a cubic polynomial.
+            Given::Exact | Given::Third => match law {
+                CubicLaw::GreenStrain => PairLaw::GreenStrain,
+                CubicLaw::CubicSoftening => PairLaw::CubicSoftening,
+            },
+            Given::First => PairLaw::Linear,
+            Given::Second => PairLaw::Approximated(law, Approximation::SecondOrder),
+            Given::Trapezoidal => PairLaw::Approximated(law, Approximation::Trapezoidal),
         }
-    };
-    let approximation = table.choice_or_first(
-        "approximation",
-        "approximation",
-        &[
-            ("exact", Kind::Exact),
-            ("taylor-1", Kind::FirstOrder),
-            ("taylor-2", Kind::As(Approximation::SecondOrder)),
-            // The same as the law itself, a cubic polynomial.
-            ("taylor-3", Kind::Exact),
-            ("trapezoidal", Kind::As(Approximation::Trapezoidal)),
-        ],
-    );
-    Some(match approximation? {
-        Kind::Exact => law?,
-        Kind::FirstOrder => PairLaw::Linear,
-        Kind::As(approximation) => PairLaw::Approximated(cubic, approximation),
-    })
+    }
 }

@@ -1,17 +1,17 @@
 //! Reads viscosity and plasticity of state-based materials.
 
-use pericles::material::StressState;
 use pericles_deck_derive::DeckTable;
-use pericles_solids::inelastic::{Inelasticity, ViscousTerm};
+use pericles_solids::inelastic::{Inelasticity, ViscousTerm, Yield};
 use serde::{Deserialize, Serialize};
 
+use super::scope::MaterialScope;
 use crate::declaration::declared;
 use crate::form::described;
 use crate::reader::Table;
 use crate::state_based::read_yield;
 
 /// Reads the inelastic shear behaviour of a material.
-pub(super) fn read(table: &Table<'_>, state: Option<StressState>) -> Option<Inelasticity> {
+pub(super) fn read(table: &Table<'_>, scope: MaterialScope<'_>) -> Option<Inelasticity> {
     let law = match table.has("viscosity") {
         true => {
             for key in ["yield_stress", "hardening"] {
@@ -22,9 +22,9 @@ pub(super) fn read(table: &Table<'_>, state: Option<StressState>) -> Option<Inel
             }
             Inelasticity::Viscous(declared(table, "viscosity", ())?)
         }
-        false => read_yield(table)?.map_or(Inelasticity::Elastic, Inelasticity::Plastic),
+        false => read_yield(table, scope)?.map_or(Inelasticity::Elastic, Inelasticity::Plastic),
     };
-    table.accept(law.check(state?))?;
+    table.accept(law.check(scope.state()?))?;
     Some(law)
 }
 
@@ -41,4 +41,16 @@ struct ViscousTermForm {
     time: f64,
 }
 
-described!(ViscousTerm: ViscousTermForm);
+#[derive(Serialize, Deserialize)]
+#[serde(
+    remote = "Inelasticity",
+    rename_all = "snake_case",
+    deny_unknown_fields
+)]
+enum InelasticityForm {
+    Elastic,
+    Viscous(#[serde(with = "crate::form")] Vec<ViscousTerm>),
+    Plastic(#[serde(with = "crate::form")] Yield),
+}
+
+described!(ViscousTerm: ViscousTermForm, Inelasticity: InelasticityForm);

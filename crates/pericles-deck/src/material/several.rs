@@ -1,7 +1,8 @@
 //! Materials of a body: `[material]`, `[materials.NAME]`, or both.
 
-use super::material;
+use super::scope::MaterialScope;
 use super::shared::{difference_of_tables, same_length};
+use super::table::material;
 use super::types::{Material, MaterialModel, NamedMaterial};
 use crate::body::BodyRead;
 use crate::fault::Fault;
@@ -31,7 +32,10 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
     let mut named: Vec<(&str, Item<'_>)> = named.map(|(name, _, item)| (name, item)).collect();
     if named.is_empty() {
         let table = root.required("material").and_then(|item| item.table());
-        let own = table.and_then(|table| material(table, body, sets, false));
+        let own = table.and_then(|table| {
+            let scope = MaterialScope::of(&table, body, sets, [false, false]);
+            material(table, scope)
+        });
         return Materials {
             names: own.iter().map(|own| own.name().to_owned()).collect(),
             own,
@@ -49,7 +53,8 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
     });
     let (own, name, place) = match given {
         Some(table) => {
-            let own = material(table, body, sets, true);
+            let scope = MaterialScope::of(&table, body, sets, [true, false]);
+            let own = material(table, scope);
             let name = own.as_ref().map_or(Material::DEFAULT, Material::name);
             let name = name.to_owned();
             (own, name, None)
@@ -108,11 +113,8 @@ pub(crate) fn read(root: &Table<'_>, body: &BodyRead, sets: &SetNames) -> Materi
 /// Reads a table of `[materials]`.
 fn one(item: &Item<'_>, body: &BodyRead, sets: &SetNames, shared: bool) -> Option<Material> {
     let table = item.table()?;
-    table.forbid(
-        "name",
-        "the heading of the table is the name of the material",
-    );
-    material(table, body, sets, shared)
+    let scope = MaterialScope::of(&table, body, sets, [shared, true]);
+    material(table, scope)
 }
 
 /// Reads a further table of `[materials]`, whose shared keys must agree with the body's material.

@@ -7,13 +7,13 @@ use pericles::material::{
 use pericles_deck_derive::{DeckKeys, DeckTable};
 use serde::{Deserialize, Serialize};
 
-use crate::declaration::DeckValue;
+use super::scope::MaterialScope;
+use crate::declaration::Fallback;
 use crate::expression::BondExpression;
 use crate::fault::Fault;
 use crate::form::described;
 use crate::quantity::Quantity;
-use crate::reader::Table;
-use crate::vocabulary::STRENGTHS;
+use crate::reader::{Item, Table};
 
 /// Softening of bonds. The force c (1 − d) s of a bond with stretch s decreases with the largest stretch that the bond has
 /// had; ∫ c (1 − d) s ds = ½ c s₀² with the critical stretch s₀, which is given or follows from the fracture energy.
@@ -61,7 +61,15 @@ enum SofteningLawForm {
     Exponential,
 }
 
-described!(SofteningLaw: SofteningLawForm);
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "TensileStrength", deny_unknown_fields)]
+struct TensileStrengthForm {
+    strength: f64,
+    #[serde(with = "crate::form")]
+    calibration: FractureCalibration,
+}
+
+described!(SofteningLaw: SofteningLawForm, TensileStrength: TensileStrengthForm);
 
 /// Why bonds that fail by strength have no onset.
 const BY_STRENGTH: &str = "with failure = \"strength\" a bond softens from its stretch when the stress reaches the strength";
@@ -77,6 +85,8 @@ pub enum FailureSurface {
 }
 
 impl FailureSurface {
+    const RANKINE: &'static str = "rankine";
+
     /// Returns the surface of the engine for a tensile strength, Pa.
     ///
     /// # Errors
@@ -91,93 +101,149 @@ impl FailureSurface {
     }
 }
 
-/// Rejects the key in the table of a material whose bonds cannot soften.
-pub(super) fn forbid_softening(table: &Table<'_>) {
-    table.forbid(
-        "softening",
-        "it requires model = \"bond-stretch\" or \"linear\", whose pair force is proportional to the stretch, so that the area under the curve is the energy of the bond",
-    );
+/// How bonds of the models `bond-stretch` and `linear` fail.
+#[derive(DeckTable)]
+#[deck(scope = MaterialScope<'s>)]
+pub(super) struct StrengthKeys {
+    #[deck(
+        flatten,
+        default = Failure::Stretch,
+        forbid_if(
+            !scope.breaks,
+            "bonds without `fracture_energy` or `critical_stretch` never break"
+        )
+    )]
+    failure: Failure,
+    /// bond-stretch, linear: softening of bonds beyond an elastic limit. The area under the curve equals the energy of a bond
+    /// that breaks at the critical stretch, so that a crack dissipates the fracture energy. Unloading is linear to the origin.
+    /// The field Damage is then the lost fraction of the stiffness of a point's bonds. Uses a neighbour list. Default: no
+    /// softening.
+    #[deck(
+        scope = failure.is_some_and(Failure::is_by_strength),
+        otherwise = "it requires model = \"bond-stretch\" or \"linear\", whose pair force is proportional to the stretch, so that the area under the curve is the energy of the bond"
+    )]
+    softening: Option<BondSoftening>,
+    /// bond-stretch, linear, with `softening`: tensile strength f_t. It determines the stretch s_e at which softening starts:
+    /// the largest stress of a homogeneous body in uniaxial tension is f_t, in the mean over tension normal to the planes (10),
+    /// (11) in 2D and (100), (110), (111) in 3D, or by integrals with fracture_calibration = "continuum" and for listed points;
+    /// s_e = f_t/E in a bar. Independent of the elastic modulus and the fracture energy, for horizons up to the limit that
+    /// `check` prints. Not with `onset_stretch`. With failure = "strength": the strength f_t at which bonds begin to fail, for
+    /// any horizon.
+    #[deck(
+        flatten,
+        key = "tensile_strength",
+        with = tensile_strength,
+        scope = (scope, failure, softening),
+        otherwise = "it requires model = \"bond-stretch\" or \"linear\" with `softening`; failure = \"principal-stress\" has the key `strength`"
+    )]
+    tensile_strength: Option<f64>,
 }
 
-/// Reads `failure` of a bond-based material, and the strength surface of failure = "strength".
-pub(super) fn failure(
-    table: &Table<'_>,
-    dimension: Option<usize>,
-) -> Option<Option<FailureSurface>> {
-    const KEY: &str = "strength_surface";
-    const RANKINE: &str = "rankine";
-    if !STRENGTHS.iter().any(|key| table.has(key)) {
-        for key in ["failure", KEY] {
-            table.forbid(
-                key,
-                "bonds without `fracture_energy` or `critical_stretch` never break",
-            );
-        }
-        return Some(None);
+/// Failure criterion of bonds. `strength` (bond-stretch, linear): a bond is elastic at any stretch until the stress of one of
+/// its ends reaches the strength of the material; it then softens from its stretch at that time, with the energy of a bond that
+/// breaks at the critical stretch, or breaks at once beyond that stretch. Strength and fracture energy are then independent for
+/// every horizon.
+#[derive(DeckKeys)]
+#[deck(tag = "failure", what = "failure criterion", scope = MaterialScope<'s>)]
+enum Failure {
+    #[default]
+    Stretch,
+    Strength {
+        /// failure = "strength": the stresses at which bonds begin to fail. `rankine`: the largest principal stress is
+        /// `tensile_strength`; or an expression of the stress in Pa (components, stress_1, stress_2, stress_3,
+        /// equivalent_stress) that is 1 on the surface, such as `"stress_1/60e6 + stress_2/600e6"`.
+        #[deck(
+            with = surface,
+            default = FailureSurface::Rankine,
+            otherwise = "it requires failure = \"strength\" of a bond-based material; failure = \"expression\" has the key `criterion`"
+        )]
+        strength_surface: FailureSurface,
+    },
+}
+
+impl Failure {
+    fn is_by_strength(&self) -> bool {
+        matches!(self, Self::Strength { .. })
     }
-    let by_strength = table.choice_or_first(
-        "failure",
-        "failure criterion",
-        &[("stretch", false), ("strength", true)],
-    );
-    if !by_strength? {
-        table.forbid(KEY, "it requires failure = \"strength\"");
-        return Some(None);
+}
+
+impl StrengthKeys {
+    /// Returns tensile strength, softening and strength surface of a material whose fracture energy has this calibration.
+    pub(super) fn made(self, calibration: FractureCalibration) -> Strength {
+        let strength = self.tensile_strength;
+        let usual = self.failure.is_by_strength().then_some(BondSoftening {
+            law: SofteningLaw::Linear,
+            onset_stretch: None,
+        });
+        let surface = match self.failure {
+            Failure::Stretch => None,
+            Failure::Strength { strength_surface } => Some(strength_surface),
+        };
+        let strength = strength.map(|strength| TensileStrength {
+            strength,
+            calibration,
+        });
+        (strength, self.softening.or(usual), surface)
     }
-    let Some(item) = table.optional(KEY) else {
-        table.record(KEY, RANKINE);
-        return Some(Some(FailureSurface::Rankine));
-    };
-    if item.is_keyword(RANKINE) {
-        return Some(Some(FailureSurface::Rankine));
+}
+
+/// Tensile strength, softening and strength surface of a material.
+pub(super) type Strength = (
+    Option<TensileStrength>,
+    Option<BondSoftening>,
+    Option<FailureSurface>,
+);
+
+/// Reads a strength surface.
+fn surface(item: &Item<'_>, scope: MaterialScope<'_>) -> Option<FailureSurface> {
+    if item.is_keyword(FailureSurface::RANKINE) {
+        return Some(FailureSurface::Rankine);
     }
     let text = item.text()?;
-    let report = |reason: String| item.report(Fault::bad_expression(text.clone(), reason));
-    match BondExpression::parse(&text, dimension.unwrap_or(3)) {
+    let reason = match BondExpression::parse(&text, scope.body.frame.dimension.unwrap_or(3)) {
         Ok(expression) if expression.is_of_stress() => {
-            Some(Some(FailureSurface::Expression(expression)))
+            return Some(FailureSurface::Expression(expression));
         }
-        Ok(_) => {
-            report("a strength surface is a function of the stress of a point: of its components, stress_1, stress_2, stress_3 and equivalent_stress".into());
-            None
-        }
-        Err(malformed) => {
-            report(malformed.reason);
-            None
-        }
-    }
+        Ok(_) => "a strength surface is a function of the stress of a point: of its components, stress_1, stress_2, stress_3 and equivalent_stress".into(),
+        Err(malformed) => malformed.reason,
+    };
+    item.report(Fault::bad_expression(text, reason));
+    None
 }
 
-/// Rejects the keys in the table of a material whose bonds have no strength.
-pub(super) fn forbid_failure(table: &Table<'_>) {
-    for key in ["failure", "strength_surface"] {
-        table.forbid(
-            key,
-            "it requires model = \"bond-stretch\", \"linear\", \"state-based\" or \"correspondence\"",
-        );
+impl<S> Fallback<S> for FailureSurface {
+    fn missing(self, table: &Table<'_>, key: &'static str, _: S) -> Option<Self> {
+        table.record(key, Self::RANKINE);
+        Some(self)
     }
 }
 
 /// Reads the tensile strength of a material, from which the onset of its softening follows, or at which its bonds begin to
-/// fail. It requires a softening law without an onset or failure = "strength"; `calibration` is that of the fracture
-/// energy.
-pub(super) fn tensile_strength(
+/// fail. It requires a softening law without an onset or failure = "strength".
+fn tensile_strength(
     table: &Table<'_>,
-    softening: Option<Option<BondSoftening>>,
-    surface: Option<&FailureSurface>,
-    calibration: Option<FractureCalibration>,
-) -> Option<Option<TensileStrength>> {
+    (scope, failure, softening): (
+        MaterialScope<'_>,
+        Option<&Failure>,
+        Option<&Option<BondSoftening>>,
+    ),
+) -> Option<Option<f64>> {
     const KEY: &str = "tensile_strength";
-    let breaks = STRENGTHS.iter().any(|key| table.has(key));
-    let forbidden = match softening? {
-        Some(_) if surface.is_some() && breaks => None,
+    let (Some(failure), Some(softening)) = (failure, softening) else {
+        // It is unknown whether the key belongs to the material.
+        table.know(&[KEY]);
+        return None;
+    };
+    let by_strength = failure.is_by_strength();
+    let forbidden = match softening {
+        None if by_strength => None,
         None => Some(
             "it requires `softening = { law = … }`: the tensile strength gives the stretch at which softening starts; or failure = \"strength\"",
         ),
         Some(given) if given.onset_stretch.is_some() => Some(
             "`softening` has an `onset_stretch`, which determines the strength; give one of the two keys",
         ),
-        Some(_) if !breaks => {
+        Some(_) if !scope.breaks => {
             Some("bonds without `fracture_energy` or `critical_stretch` never break")
         }
         Some(_) => None,
@@ -187,37 +253,11 @@ pub(super) fn tensile_strength(
         return Some(None);
     }
     let Some(item) = table.optional(KEY) else {
-        match surface {
-            Some(_) => table.requires_one_of(&[KEY]),
-            None => table.requires_one_of(&[KEY, "softening.onset_stretch"]),
+        match by_strength {
+            true => table.requires_one_of(&[KEY]),
+            false => table.requires_one_of(&[KEY, "softening.onset_stretch"]),
         }
         return None;
     };
-    Some(Some(TensileStrength {
-        strength: item.positive(Quantity::Traction)?,
-        calibration: calibration?,
-    }))
-}
-
-/// Rejects the key in the table of a material whose bonds cannot soften.
-pub(super) fn forbid_tensile_strength(table: &Table<'_>) {
-    table.forbid(
-        "tensile_strength",
-        "it requires model = \"bond-stretch\" or \"linear\" with `softening`; failure = \"principal-stress\" has the key `strength`",
-    );
-}
-
-/// Reads the softening of bonds; with failure = "strength" its default is a straight line.
-pub(super) fn softening(
-    table: &Table<'_>,
-    surface: Option<&FailureSurface>,
-) -> Option<Option<BondSoftening>> {
-    let given = table.maybe("softening", |item| {
-        BondSoftening::read(&item, surface.is_some())
-    })?;
-    let usual = surface.map(|_| BondSoftening {
-        law: SofteningLaw::Linear,
-        onset_stretch: None,
-    });
-    Some(given.or(usual))
+    item.positive(Quantity::Traction).map(Some)
 }

@@ -1,7 +1,10 @@
 //! Data types of materials.
 
 use pericles::family::VolumeCorrection;
-use pericles::material::{BondMaterial, CubicLaw, PairLaw, SurfaceCorrection, TensileStrength};
+use pericles::kernel::Influence;
+use pericles::material::{
+    BondMaterial, CubicLaw, Fracture, Modulus, PairLaw, SurfaceCorrection, TensileStrength,
+};
 use pericles::operator::DamageMeasure;
 use pericles_dispersion::tuning::TunedTable;
 use pericles_waves::ForceForm;
@@ -10,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::scatter::Scatter;
 use super::softening::{BondSoftening, FailureSurface};
 use crate::correspondence::Correspondence;
+use crate::form::described;
 use crate::property::MaterialFunctions;
 use crate::state_based::StateBased;
 
@@ -244,3 +248,22 @@ impl Material {
         self.model.name()
     }
 }
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "BondMaterial", deny_unknown_fields)]
+struct BondMaterialForm {
+    #[serde(rename = "model", with = "crate::form")]
+    law: PairLaw,
+    density: f64,
+    #[serde(with = "crate::form")]
+    modulus: Modulus,
+    horizon: f64,
+    #[serde(with = "crate::form")]
+    influence: Influence,
+    #[serde(with = "crate::form")]
+    volume_correction: VolumeCorrection,
+    #[serde(with = "crate::form")]
+    fracture: Fracture,
+}
+
+described!(BondMaterial: BondMaterialForm);

@@ -102,7 +102,7 @@ impl MaterialFunctions {
     }
 
     /// Reads the functions of the table of a material, after its keys have been read.
-    pub(crate) fn read(table: &Table<'_>, dimension: Option<usize>) -> Option<Self> {
+    fn read(table: &Table<'_>, dimension: Option<usize>) -> Option<Self> {
         let read: Vec<Option<MaterialFunction>> = MaterialProperty::ALL
             .into_iter()
             .filter_map(|property| Some((property, table.read_before(property.key())?)))
@@ -120,21 +120,15 @@ impl MaterialFunctions {
     }
 }
 
-/// Reports functions in the table of an interface, whose constants are numbers; none if there are any.
-pub(crate) fn reject_functions(table: &Table<'_>) -> Option<()> {
-    let mut all = MaterialProperty::ALL.into_iter();
-    all.try_for_each(|property| {
-        let item = table.read_before(property.key()).filter(Item::is_table);
-        item.map_or(Some(()), |item| {
-            item.positive(property.quantity()).map(drop)
-        })
-    })
+/// Reads the functions of the table of a material; the scope is the dimension of the body. The keys have been read.
+pub(crate) fn functions(table: &Table<'_>, dimension: Option<usize>) -> Option<MaterialFunctions> {
+    MaterialFunctions::read(table, dimension)
 }
 
-/// Reads the number of a property of a material: a positive number, or 1 for a function, which
-/// [`MaterialFunctions::read`] reads.
-pub(crate) fn number_of(item: &Item<'_>, property: MaterialProperty) -> Option<f64> {
-    match item.is_table() {
+/// Returns the reader of the number of a property of a material: a positive number, or 1 for a function, which
+/// [`functions`] reads.
+pub(crate) fn number_of<S>(property: MaterialProperty) -> impl Fn(&Item<'_>, S) -> Option<f64> {
+    move |item, _| match item.is_table() {
         true => Some(1.0),
         false => item.positive(property.quantity()),
     }

@@ -3,7 +3,7 @@
 mod functions;
 
 pub use functions::{MaterialFunction, MaterialFunctions, MaterialProperty};
-pub(crate) use functions::{number_of, reject_functions};
+pub(crate) use functions::{functions, number_of};
 
 use serde::{Deserialize, Serialize};
 
@@ -148,23 +148,21 @@ pub(crate) fn function(
 ) -> Option<PropertyFunction> {
     const FORMS: &[&str] = &["expression", "table"];
     let mut names = VARIABLES[..scope.dimension.unwrap_or(3)].to_vec();
+    if !scope.temperature {
+        return component::expression_in(item, &names).map(PropertyFunction::Expression);
+    }
+    names.push("temperature");
     let table = item.table()?;
-    let given = match scope.temperature {
-        true => {
-            names.push("temperature");
-            table.exactly_one(FORMS)
-        }
-        false => {
-            table.define("expression");
-            table
-                .required("expression")
-                .map(|item| ("expression", item))
-        }
-    };
-    let read = given.and_then(|(form, item)| match form {
-        "table" => rows(&item, quantity, range).map(PropertyFunction::Table),
-        _ => component::expression(&item, &names).map(PropertyFunction::Expression),
-    });
+    // The yield stress is the only such property.
+    table.about("Yield stress as a function of position or temperature. The temperature is that of `[thermal]`, prescribed or computed.");
+    table.describe("expression", "Yield stress as a function of the position x, y, z (m) and the temperature `temperature` (K), in Pa.");
+    table.describe("table", "Rows [temperature, yield stress] with increasing temperatures: linear between the rows, constant below the first and above the last.");
+    let read = table
+        .exactly_one(FORMS)
+        .and_then(|(form, item)| match form {
+            "table" => rows(&item, quantity, range).map(PropertyFunction::Table),
+            _ => component::expression(&item, &names).map(PropertyFunction::Expression),
+        });
     table.finish();
     read
 }

@@ -17,7 +17,7 @@ use serde_json::{Map, Value as Json};
 
 pub(crate) use item::Item;
 pub(crate) use survey::{Form, Survey, TableSurvey, below};
-pub(crate) use table::{Alternative, Table};
+pub(crate) use table::{Alternative, Group, Table};
 
 use crate::document::Node;
 use crate::fault::Fault;

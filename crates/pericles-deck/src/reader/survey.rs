@@ -226,7 +226,10 @@ impl Survey {
     /// Notes the description of a declared table.
     pub(super) fn about(&mut self, table: &KeyPath, text: &'static str) {
         let place = self.place(table);
-        self.descriptions.insert((place, None), vec![text]);
+        let texts = self.descriptions.entry((place, None)).or_default();
+        if !texts.contains(&text) {
+            texts.push(text);
+        }
     }
 
     /// Notes the description of a declared key.

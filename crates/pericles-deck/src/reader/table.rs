@@ -5,14 +5,13 @@ use std::cell::RefCell;
 use serde_json::Value as Json;
 
 use super::{Form, Item, Ledger};
-use crate::document::Entry;
+use crate::document::{Entry, Node, Value};
 use crate::fault::Fault;
 use crate::key_path::KeyPath;
 use crate::nearest::nearest;
 use crate::source::Place;
 use crate::vocabulary::{canonical, synonyms};
 use crate::wording::or;
-use crate::words::Worded;
 
 /// A table being read.
 pub(crate) struct Table<'a> {
@@ -100,12 +99,22 @@ impl<'a> Table<'a> {
 
     /// Returns the location of the value of a key, under any of its names.
     pub(crate) fn place_of(&self, key: &str) -> Option<Place> {
+        self.node_of(key).map(|node| node.place)
+    }
+
+    /// Returns the word that is the value of a key, also if it is not allowed.
+    pub(crate) fn word_of(&self, key: &str) -> Option<&'a str> {
+        match &self.node_of(key)?.value {
+            Value::Text(word) => Some(word),
+            _ => None,
+        }
+    }
+
+    /// Returns the value of a key, under any of its names.
+    fn node_of(&self, key: &str) -> Option<&'a Node> {
         let names =
             |entry: &&Entry| entry.key == key || synonyms(key).contains(&entry.key.as_str());
-        self.entries
-            .iter()
-            .find(names)
-            .map(|entry| entry.node.place)
+        self.entries.iter().find(names).map(|entry| &entry.node)
     }
 
     /// Returns the number that was read from a key, in SI units; also one out of range.
@@ -320,11 +329,6 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Reads a value of the engine by its word; the default is the first.
-    pub(crate) fn worded<T: Worded>(&self, key: &'static str, what: &'static str) -> Option<T> {
-        self.choice_or_first(key, what, &T::words())
-    }
-
     /// Returns the tables of an array of tables; empty if the key is missing.
     pub(crate) fn tables(&self, key: &'static str) -> Vec<Table<'a>> {
         let tables = self.optional(key).and_then(|item| item.tables());
@@ -460,13 +464,15 @@ impl<'a> Item<'a> {
 /// An alternative of a table: a word or an exclusive key, with the keys that it selects.
 pub(crate) struct Alternative {
     pub(crate) name: &'static str,
-    /// Groups of keys, and why other alternatives reject them, if the reason is not the choice itself.
-    pub(crate) keys: Vec<(Vec<&'static str>, Option<&'static str>)>,
+    pub(crate) groups: Vec<Group>,
 }
+
+/// Keys of an alternative, and why other alternatives reject them, if the reason is not the choice itself.
+pub(crate) type Group = (Vec<&'static str>, Option<&'static str>);
 
 impl Alternative {
     fn keys(&self) -> impl Iterator<Item = (&'static str, Option<&'static str>)> {
-        let groups = self.keys.iter();
+        let groups = self.groups.iter();
         groups.flat_map(|(keys, reason)| keys.iter().map(|key| (*key, *reason)))
     }
 

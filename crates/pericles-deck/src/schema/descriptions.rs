@@ -1,34 +1,28 @@
 //! Descriptions of tables and keys.
 
-use toml::Table;
+use std::collections::BTreeMap;
 
 /// The key of the description of a table itself.
 const ABOUT: &str = "about";
 
 /// Descriptions by table and key; names of tables have no list brackets.
-pub(super) struct Descriptions(Table);
+#[derive(Default)]
+pub(super) struct Descriptions(BTreeMap<(String, String), String>);
 
 impl Descriptions {
-    /// Collects the descriptions of `descriptions.toml` and of declared tables.
-    pub(super) fn new<'a>(
-        declared: impl Iterator<Item = (&'a str, Option<&'a str>, String)>,
-    ) -> Self {
-        let text = include_str!("descriptions.toml");
-        let mut all: Table = text
-            .parse()
-            .unwrap_or_else(|error| panic!("descriptions.toml: {error}"));
-        for (table, key, text) in declared {
-            let place = table.replace("[]", "");
-            let keys = all.entry(place).or_insert_with(|| Table::new().into());
-            if let Some(keys) = keys.as_table_mut() {
-                let key = key.unwrap_or(ABOUT);
-                // Keys of several tables with one name have several descriptions.
-                let other = keys.get(key).and_then(|other| other.as_str());
-                let text = other.map_or(text.clone(), |other| format!("{other} {text}"));
-                keys.insert(key.to_owned(), text.into());
+    /// Collects the descriptions that the reader notes.
+    pub(super) fn new<'a>(noted: impl Iterator<Item = (&'a str, Option<&'a str>, String)>) -> Self {
+        let mut all = Self::default();
+        for (table, key, text) in noted {
+            let key = key.unwrap_or(ABOUT).to_owned();
+            let slot = all.0.entry((table.replace("[]", ""), key)).or_default();
+            // Keys of several tables with one name have several descriptions.
+            if !slot.is_empty() {
+                slot.push(' ');
             }
+            slot.push_str(&text);
         }
-        Self(all)
+        all
     }
 
     /// Returns the description of a table or definition.
@@ -44,18 +38,7 @@ impl Descriptions {
     }
 
     fn get(&self, table: &str, key: &str) -> Option<&str> {
-        self.0.get(table)?.get(key)?.as_str()
-    }
-
-    /// Returns all tables and keys with a description; no key for the description of a table.
-    #[cfg(test)]
-    pub(super) fn all(&self) -> impl Iterator<Item = (&str, Option<&str>)> {
-        self.0.iter().flat_map(|(table, keys)| {
-            let keys = keys.as_table().into_iter().flatten();
-            keys.map(move |(key, text)| {
-                assert!(text.is_str(), "[{table}] {key}");
-                (table.as_str(), (key != ABOUT).then_some(key.as_str()))
-            })
-        })
+        let text = self.0.get(&(table.to_owned(), key.to_owned()));
+        text.map(String::as_str)
     }
 }

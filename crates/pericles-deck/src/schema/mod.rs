@@ -1,10 +1,9 @@
 //! The schema of decks: keys, forms of their values and descriptions.
 //!
 //! Keys, forms, words, ranges and defaults are those that the reader requests while it reads the
-//! [`specimens`], so that schema and reader cannot disagree. Descriptions of declared tables
-//! ([`declaration`](crate::declaration)) come from the documentation of their fields; those of tables with a reader
-//! written by hand are in `descriptions.toml`. Tests require a form and a description for every key of the reader, and a
-//! key for every description. The schema does not contain which keys need which shape, model or scheme: it allows more
+//! [`specimens`], so that schema and reader cannot disagree. Descriptions come from the documentation of the fields of
+//! declared tables ([`declaration`](crate::declaration)). Tests require a form and a description for every key of the
+//! reader. The schema does not contain which keys need which shape, model or scheme: it allows more
 //! than the reader, never less.
 
 mod descriptions;
@@ -257,7 +256,7 @@ mod tests {
         }
         assert!(
             unexplained.is_empty(),
-            "keys without documentation, also in descriptions.toml: {unexplained:#?}"
+            "keys without documentation: {unexplained:#?}"
         );
         assert!(formless.is_empty(), "no specimen has {formless:#?}");
     }
@@ -334,31 +333,5 @@ mod tests {
             wrong.is_empty(),
             "add specimens without these keys: {wrong:#?}"
         );
-    }
-
-    #[test]
-    fn every_description_belongs_to_a_key() {
-        let schema = Schema::new();
-        let keys = keys(&schema);
-        let known = |place: &str| keys.iter().any(|key| key.replace("[]", "") == place);
-        let tables: Vec<String> = schema
-            .survey
-            .tables()
-            .map(|(place, _)| place.replace("[]", ""))
-            .collect();
-        for (table, key) in schema.descriptions.all() {
-            let explains = match key {
-                Some(key) => known(&below(table, key)),
-                None => {
-                    tables.iter().any(|place| place == table)
-                        || known(table)
-                        || schema.survey.definitions().contains(&table)
-                }
-            };
-            assert!(
-                explains,
-                "no key of the reader has the description [{table}] {key:?}"
-            );
-        }
     }
 }

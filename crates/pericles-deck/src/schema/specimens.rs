@@ -299,7 +299,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     ),
     specimen(
         PLATE,
-        &["impactor=[{ name = 'a', shape = 'box', size = [1, 1], centre = [0, 0], mass = 1, inertia = 1, spin = 1, velocity = [0, 1], rotation = { angle = 1 } }, { name = 'b', shape = 'ball', radius = 1, centre = [0, 9], motion = 'prescribed', displacement = [0, 1], function = { kind = 'ramp', duration = 1 } }]"],
+        &["impactor=[{ name = 'a', shape = 'box', size = [1, 1], centre = [0, 0], mass = 1, inertia = 1, spin = 1, velocity = [0, 1], rotation = { angle = 1 } }, { name = 'b', shape = 'ball', radius = 1, centre = [0, 9], motion = 'prescribed', displacement = [0, 1], function = { kind = 'ramp', duration = 1 } }, { name = 'c', shape = 'ball', radius = 1, centre = [9, 9], mass = 1 }]"],
     ),
     specimen(
         BLOCK,

@@ -113,7 +113,10 @@ impl Assembler<'_> {
         let file = resources.beside(file);
         (resources.read_table)(&file, points, &columns.concat(), resources.memory).map_err(
             |error| {
-                let fault = error.fault(|reason| Fault::BadInitialFile { reason, points });
+                let advice = format!(
+                    "expected: one line for each of the {points} points, in the order of the field files (listed points: of their file), with displacement components in m, then velocity components in m/s; a relative path starts at the deck's folder"
+                );
+                let fault = error.fault(|reason| Fault::other("invalid", reason, advice));
                 at_path(path.key("file"), fault)
             },
         )
@@ -191,11 +194,14 @@ impl Assembler<'_> {
                         axis,
                         earlier,
                     } => {
-                        let fault = Fault::PrescribedTwice {
-                            point,
-                            axis,
-                            earlier: earlier + 1,
-                        };
+                        let fault = Fault::other(
+                            "conflict",
+                            format!(
+                                "the motion of point {point} along {axis} is already prescribed by [[constraint]] number {}, with other values",
+                                earlier + 1
+                            ),
+                            "choose other points, set this component to \"free\", or give both tables the same value, function and `until`",
+                        );
                         at_path(path.clone(), fault)
                     }
                     error => at(&path, error),

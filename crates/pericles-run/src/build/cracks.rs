@@ -41,12 +41,12 @@ impl Assembler<'_> {
                 let file = resources.beside(file);
                 let mesh = (resources.read_mesh)(&file, resources.memory);
                 let mesh = mesh.map_err(|error| {
-                    let fault = error.fault(|reason| Fault::BadCrackFile { reason });
+                    let fault = error.fault(bad_file);
                     at_path(key.clone(), fault)
                 })?;
                 mesh.check().map_err(|error| {
                     let reason = format!("{}: {error}", file.display());
-                    at_path(key, Fault::BadCrackFile { reason })
+                    at_path(key, bad_file(reason))
                 })?;
                 let corner = |node: u32| mesh.nodes[node as usize].map(|x| x * unit);
                 let triangles = mesh.triangles().into_iter();
@@ -87,4 +87,13 @@ impl Assembler<'_> {
         }
         tracked
     }
+}
+
+/// Creates the error for an invalid file of a pre-crack.
+fn bad_file(reason: String) -> Fault {
+    Fault::other(
+        "invalid",
+        reason,
+        "expected: a file of triangles (STL, OBJ, PLY, OFF, Gmsh, VTU or VTP); a relative path starts at the deck's folder",
+    )
 }

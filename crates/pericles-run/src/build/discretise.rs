@@ -4,7 +4,9 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use pericles::space::{GradedCloud, PointCloud, PointSet};
-use pericles_deck::{ALL, Body, BuildError, Fault, KeyPath, Members, Model, Remark, piece_path};
+use pericles_deck::{
+    ALL, Body, BuildError, Fault, KeyPath, Members, Model, Remark, piece_path, shortened,
+};
 
 use super::assembler::{Assembler, Warnings};
 use super::discretisation::{Discretisation, Grids, Sets};
@@ -136,10 +138,11 @@ impl Assembler<'_> {
                 Err(error) => problems.extend(error.into_problems()),
                 Ok(points) => {
                     if cloud.domain().count(points.len() as u64) == 0 {
-                        let fault = Fault::EmptySet {
-                            set: set.name.clone(),
-                            advice: advice_on_empty(&set.members, cloud),
-                        };
+                        let fault = Fault::other(
+                            "no points",
+                            format!("the set `{}` selects no point", shortened(&set.name)),
+                            advice_on_empty(&set.members, cloud),
+                        );
                         problems.push(Remark::new(path, fault));
                     }
                     sets.push((set.name.clone(), points));

@@ -1,6 +1,7 @@
 //! The exact solution of a model and the points of comparison.
 
 use pericles::space::{PointCloud, PointSet};
+use pericles::units::quantity;
 use pericles_deck::{BuildError, Caution, Fault, KnownSolution, Pulse, Solid};
 use pericles_waves::exact::{BarMode, ExactSolution, LineSolution, StretchedBar, TravellingPulse};
 
@@ -99,11 +100,16 @@ impl Assembler<'_> {
         if let (Some(window), true) = (exact.window, is_empty) {
             let distances = x.iter().map(|x| -(x - centre).abs());
             let nearest = -domain.max(distances.fold(f64::NEG_INFINITY, f64::max));
-            let fault = Fault::EmptyWindow {
-                window,
-                centre,
-                nearest,
-            };
+            let fault = Fault::other(
+                "no points",
+                format!(
+                    "the window of {} around x = {} contains no point: the nearest one is {} away",
+                    quantity(window, "m"),
+                    quantity(centre, "m"),
+                    quantity(nearest, "m")
+                ),
+                "use a larger window, or move the centre of the exact solution into the body",
+            );
             return Err(at_path("exact.window", fault));
         }
         let points = gathered(cloud, points);
@@ -120,7 +126,13 @@ impl Assembler<'_> {
         if terms <= MOST {
             return Ok(());
         }
-        let fault = Fault::LongSum { terms, most: MOST };
+        let fault = Fault::other(
+            "too many terms",
+            format!(
+                "the exact solution needs a sum of {terms:.1e} terms per point at the end of the run; at most {MOST:.0e} are allowed"
+            ),
+            "move exact.centre into the body, use a larger width, or shorten the run; the number of terms is 2 (distance from the centre + 6 c end)/width",
+        );
         Err(at_path("exact.solution", fault))
     }
 

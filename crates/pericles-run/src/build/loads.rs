@@ -3,6 +3,7 @@
 use pericles::System;
 use pericles::boundary::Load as BodyLoad;
 use pericles::space::PointCloud;
+use pericles::units::quantity;
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, Load, LoadAmplitude, SolidShape, VectorField,
 };
@@ -130,9 +131,8 @@ impl Assembler<'_> {
         for (k, (given, load)) in self.model.loads.iter().zip(system.loads()).enumerate() {
             let is_finite = |t: f64| load.is_finite_at(t, system.dimension());
             if let Some(t) = first_lost(steps, &is_finite) {
-                let (what, set) = ("load", given.set.clone());
                 let path = KeyPath::from("load").index(k);
-                return Err(at_path(&path, Fault::LostValue { what, set, t }));
+                return Err(at_path(&path, lost_value("load", &given.set, t)));
             }
         }
         for (k, (given, motion)) in self
@@ -144,9 +144,9 @@ impl Assembler<'_> {
         {
             let is_finite = |t: f64| motion.is_finite_at(t);
             if let Some(t) = first_lost(steps, &is_finite) {
-                let (what, set) = ("prescribed motion", given.set.clone());
                 let path = KeyPath::from("constraint").index(k);
-                return Err(at_path(&path, Fault::LostValue { what, set, t }));
+                let fault = lost_value("prescribed motion", &given.set, t);
+                return Err(at_path(&path, fault));
             }
         }
         Ok(())
@@ -227,4 +227,16 @@ fn largest((load, points): (&BodyLoad, usize), system: &System, end: f64) -> ([f
         }
     }
     best
+}
+
+/// Creates the error for a load or prescribed motion that becomes NaN or infinite at a time (s).
+fn lost_value(what: &str, set: &str, t: f64) -> Fault {
+    Fault::other(
+        "not finite",
+        format!(
+            "the {what} on `{set}` has no finite value at t = {}, within the run",
+            quantity(t, "s")
+        ),
+        "change the expression, or end the run or the load (`until`) earlier; the expression, and for motions its derivatives, must be finite throughout the run",
+    )
 }

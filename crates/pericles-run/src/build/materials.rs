@@ -7,7 +7,7 @@ use pericles::material::{
 use pericles::space::PointCloud;
 use pericles_deck::{
     BuildError, Caution, Fault, InterfaceFailure, KeyPath, Material, MaterialModel,
-    MaterialProperty, Solid,
+    MaterialProperty, Solid, shortened, spot,
 };
 use pericles_waves::ForceForm;
 
@@ -250,8 +250,12 @@ impl<'m> Assembler<'m> {
                     self.warn(KeyPath::from("materials").key(name), caution);
                 }
                 Some(path) if !has(number.min(255) as u8) => {
-                    let material = name.to_owned();
-                    return Err(at_path(path, Fault::EmptyMaterial { material }));
+                    let fault = Fault::other(
+                        "no points",
+                        format!("no point has the material `{}`", shortened(name)),
+                        "later assignments replace all of its points: put the larger set first",
+                    );
+                    return Err(at_path(path, fault));
                 }
                 Some(_) => {}
             }
@@ -292,11 +296,15 @@ impl<'m> Assembler<'m> {
         }
         let first = of_point.iter().position(without);
         let place = cloud.first_of_all(first).unwrap_or_default();
-        let fault = Fault::NoMaterial {
-            points,
-            of: cloud.domain().whole_points(),
-            place: place[..cloud.dimension()].to_vec(),
-        };
+        let fault = Fault::other(
+            "incomplete",
+            format!(
+                "{points} of {} points have no material, such as the one at {} m",
+                cloud.domain().whole_points(),
+                spot(&place[..cloud.dimension()])
+            ),
+            "assign one with [[assign]], or define [materials.default] for all points without an assignment",
+        );
         Err(at_path("assign", fault))
     }
 

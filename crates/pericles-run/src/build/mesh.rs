@@ -7,6 +7,7 @@
 use std::path::Path;
 
 use pericles::space::{ListedPoints, PointCloud};
+use pericles::units::quantity;
 use pericles_deck::{BuildError, Caution, Fault, KeyPath, MeshFile, Solid};
 use pericles_mesh::{MeshPoints, PointOptions, Problem, RawMesh};
 
@@ -40,7 +41,15 @@ impl Assembler<'_> {
         })?;
         if points.dimension != file.dimension {
             let (given, found) = (file.dimension, points.dimension);
-            let fault = Fault::OtherDimension { given, found };
+            let fault = Fault::other(
+                "different dimension",
+                format!(
+                    "the elements of the mesh have dimension {found}, but the body has dimension {given}"
+                ),
+                format!(
+                    "set dimension = {found}; surface elements of a solid mesh only define sets"
+                ),
+            );
             return Err(at_path(
                 ["body.dimension", "body.file"].map(KeyPath::from),
                 fault,
@@ -93,7 +102,15 @@ impl Assembler<'_> {
         let found = points.mean_size();
         match file.spacing {
             Some(given) if !(1.0 / OFF..=OFF).contains(&(found / given)) => {
-                let fault = Fault::OtherElementSize { given, found };
+                let fault = Fault::other(
+                    "different size",
+                    format!(
+                        "the mean element size is {}, but `spacing` is {}",
+                        quantity(found, "m"),
+                        quantity(given, "m")
+                    ),
+                    "remove `spacing` to use the mean element size, or correct `unit`",
+                );
                 Err(at_path("body.spacing", fault))
             }
             _ => Ok(()),

@@ -2,7 +2,8 @@
 
 use pericles::family::pairs_within;
 use pericles::space::{GradedCloud, Lattice, ListedPoints, Point, PointCloud};
-use pericles_deck::{BuildError, Fault, KeyPath, Piece, Solid, piece_path};
+use pericles::units::quantity;
+use pericles_deck::{BuildError, Fault, KeyPath, Piece, Solid, piece_path, shortened, spot};
 
 use super::assembler::{Assembler, Warnings};
 use super::mesh_body::{MeshBody, Meshes, Placement};
@@ -288,10 +289,16 @@ fn reject_overlap(cloud: &PointCloud, pieces: &[Piece]) -> Result<(), BuildError
 fn overlap(two: [u32; 2], place: Point, distance: f64, pieces: &[Piece]) -> BuildError {
     let [a, b] = [two[0].min(two[1]), two[0].max(two[1])].map(|piece| piece as usize);
     let dimension = pieces[a].shape.dimension();
-    let fault = Fault::OverlappingPieces {
-        pieces: [a, b].map(|piece| pieces[piece].name.clone()),
-        place: place[..dimension].to_vec(),
-        distance,
-    };
+    let fault = Fault::other(
+        "overlap",
+        format!(
+            "the pieces `{}` and `{}` overlap: near {} two of their points are {} apart, less than half of a cell",
+            shortened(&pieces[a].name),
+            shortened(&pieces[b].name),
+            spot(&place[..dimension]),
+            quantity(distance, "m")
+        ),
+        "move one of them: points of different pieces must be at least half of a cell apart; points one cell apart touch",
+    );
     at_path(piece_path(b), fault)
 }

@@ -6,6 +6,7 @@ use pericles::space::{
     GradedCloud, GradedGrid, Grid, ListedPoints, PointCloud, PointSource, Shape, gauss_bar,
     idle_holes, rectangular_body,
 };
+use pericles::units::quantity;
 use pericles_deck::{
     BuildError, Caution, Fault, KeyPath, Keys, Lattice, ModelWarning, PointsFile, Positions,
     Quadrature, Remark, Solid, SolidShape,
@@ -74,7 +75,13 @@ impl Assembler<'_> {
         let path = resources.beside(&file.path);
         let listed = (resources.read_points)(&path, file.dimension, resources.memory);
         let listed = listed.map_err(|error| {
-            let fault = error.fault(|reason| Fault::BadPoints { reason });
+            let fault = error.fault(|reason| {
+                Fault::other(
+                    "invalid",
+                    reason,
+                    "expected: one line `x y z block volume` per point, in m and m³; a relative path starts at the deck's folder",
+                )
+            });
             at_path("body.file", fault)
         })?;
         let cloud = listed
@@ -89,12 +96,20 @@ impl Assembler<'_> {
                 .extend(self.check_listed_points(&listed, &cloud));
             return Ok(cloud);
         }
-        let section = ["area", "thickness"].get(file.dimension - 1).copied();
-        let fault = Fault::OtherSpacing {
-            given,
-            found,
-            section,
-        };
+        let section = ["area", "thickness"].get(file.dimension - 1);
+        let section = section.map(|key| format!("; `{key}` is part of the volumes"));
+        let fault = Fault::other(
+            "different size",
+            format!(
+                "the volumes of the listed points correspond to a spacing of {}, but `spacing` is {}",
+                quantity(found, "m"),
+                quantity(given, "m")
+            ),
+            format!(
+                "check `spacing`, and the units of the file: coordinates in m, volumes in m³{}",
+                section.unwrap_or_default()
+            ),
+        );
         Err(at_path("body.spacing", fault))
     }
 

@@ -6,6 +6,7 @@ use pericles::time::{
     LinearSolver, MultiTimeStep, MultiTimeStepOptions, Newmark, Predictor, Relaxation,
     RelaxationOptions, Respa, RungeKutta, Tableau, VelocityVerlet,
 };
+use pericles::units::quantity;
 use pericles::{PericlesError, System};
 use pericles_deck::{BuildError, Caution, Fault, FineRegion, FineStep, Interface, KeyPath, Scheme};
 use pericles_heat::FixedBody;
@@ -178,21 +179,29 @@ impl Assembler<'_> {
                 extent,
                 axis,
                 reach,
-            } => Fault::ThinFineSet {
-                set: name(region),
-                extent,
-                axis,
-                reach,
-            },
+            } => Fault::other(
+                "too thin",
+                format!(
+                    "the fine set `{}` is {} thick along {axis}; it must be at least as thick as its longest bond, {}, so that no bond between coarse points crosses it",
+                    name(region),
+                    quantity(extent, "m"),
+                    quantity(reach, "m")
+                ),
+                "make the set thicker along this axis, or extend it to the surface of the body",
+            ),
             PericlesError::FineRegionsOverlap {
                 first,
                 second,
                 point,
-            } => Fault::FineSetsOverlap {
-                first: name(first),
-                second: name(second),
-                point,
-            },
+            } => Fault::other(
+                "overlap",
+                format!(
+                    "the fine sets `{}` and `{}` share points, such as point {point}",
+                    name(first),
+                    name(second)
+                ),
+                "define one set that is the union of both",
+            ),
             other => return Err(other),
         })
     }

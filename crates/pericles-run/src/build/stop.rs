@@ -23,8 +23,12 @@ impl Assembler<'_> {
             let path = KeyPath::from("time.stop_when").index(k);
             let set = stop.set.clone().unwrap_or_default();
             let never = |reason| {
-                let set = set.clone();
-                Err(at_path(&path, Fault::NeverStops { set, reason }))
+                let fault = Fault::other(
+                    "never met",
+                    format!("the stop condition on `{set}` can never be met: {reason}"),
+                    "reaction_below needs a set with a [[constraint]], damage_above a material with fracture",
+                );
+                Err(at_path(&path, fault))
             };
             let condition = match &stop.condition {
                 StopRule::Holds(condition) => {

@@ -54,7 +54,13 @@ impl Assembler<'_> {
         let file = resources.beside(path);
         let rejected = |error: FileError| {
             let file = file.display().to_string();
-            let fault = error.fault(|reason| Fault::BadSurfaceFile { file, reason });
+            let fault = error.fault(|reason| {
+                Fault::other(
+                    "invalid",
+                    format!("{file} is not a valid surface: {reason}"),
+                    "a surface must be closed, connected and consistently oriented, unless open, several or flip = true; `pericles geodesics FILE` reports details",
+                )
+            });
             at_path("body.file", fault)
         };
         let (surface, _) = (resources.read_surface)(&file, resources.memory)

@@ -235,7 +235,10 @@ impl Assembler<'_> {
                 let file = resources.beside(file);
                 let rows = (resources.read_table)(&file, points, &["temperature"], memory);
                 let rows = rows.map_err(|error| {
-                    let wrong = |reason| Fault::BadTemperatureFile { reason, points };
+                    let advice = format!(
+                        "expected: one line for each of the {points} points, in the order of the field files (listed points: of their file), with the temperature in K; a relative path starts at the deck's folder"
+                    );
+                    let wrong = |reason| Fault::other("invalid", reason, advice);
                     at_path(path.key("file"), error.fault(wrong))
                 })?;
                 let of_point = (0..n).map(|i| rows[cloud.user_number(i)]);

@@ -1,15 +1,12 @@
-//! Serialised form of the engine's types in a model. Keys and words are taken from decks where they exist there.
+//! Serialised form of the engine's types in a model, which cannot implement the traits of serde here. Keys and words are taken
+//! from decks where they exist there; remote derives next to the declarations of the keys define them.
 //!
 //! A field with `#[serde(with = "crate::form")]` has a type that is [`Described`], or an option, list, box or
 //! pair of such types.
 
-mod kernel;
-mod manifold;
-mod material;
-mod number;
-mod space;
-mod tuned;
+use std::fmt;
 
+use serde::de::{Error, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// A type with a serialised form.
@@ -97,15 +94,93 @@ impl<A: Described, B: Described> Described for (A, B) {
     }
 }
 
+/// Words for infinite numbers, which JSON lacks.
+const WORDS: [(&str, f64); 2] = [("inf", f64::INFINITY), ("-inf", f64::NEG_INFINITY)];
+
+impl Described for f64 {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match WORDS.iter().find(|(_, value)| value == self) {
+            Some((word, _)) => serializer.serialize_str(word),
+            None if self.is_nan() => {
+                Err(serde::ser::Error::custom("NaN is not allowed in a model"))
+            }
+            None => serializer.serialize_f64(*self),
+        }
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Number;
+
+        impl Visitor<'_> for Number {
+            type Value = f64;
+
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number, \"inf\" or \"-inf\"")
+            }
+
+            fn visit_f64<E: Error>(self, value: f64) -> Result<f64, E> {
+                Ok(value)
+            }
+
+            fn visit_i64<E: Error>(self, value: i64) -> Result<f64, E> {
+                Ok(value as f64)
+            }
+
+            fn visit_u64<E: Error>(self, value: u64) -> Result<f64, E> {
+                Ok(value as f64)
+            }
+
+            fn visit_str<E: Error>(self, word: &str) -> Result<f64, E> {
+                let known = WORDS.iter().find(|(known, _)| *known == word);
+                known
+                    .map(|(_, value)| *value)
+                    .ok_or_else(|| E::custom(format!("`{word}` is not a number")))
+            }
+        }
+
+        deserializer.deserialize_any(Number)
+    }
+}
+
+impl<const N: usize> Described for [f64; N] {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        self.to_vec().write(serializer)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let numbers = Vec::<f64>::read(deserializer)?;
+        let found = numbers.len();
+        let wrong = |_| D::Error::custom(format!("expected {N} numbers, found {found}"));
+        numbers.try_into().map_err(wrong)
+    }
+}
+
+/// Describes types that serde serialises itself.
+macro_rules! plain {
+    ($($type:ty),*) => {$(
+        impl Described for $type {
+            fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                self.serialize(serializer)
+            }
+
+            fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                Self::deserialize(deserializer)
+            }
+        }
+    )*};
+}
+
+plain!(bool, u8, u32, u64, usize, [i32; 3]);
+
 /// Describes a type of the engine by a remote serde derive.
 macro_rules! described {
     ($($type:ty: $form:ty),* $(,)?) => {$(
         impl crate::form::Described for $type {
-            fn write<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+            fn write<S: serde::Serializer>(&self, serializer: S) -> ::core::result::Result<S::Ok, S::Error> {
                 <$form>::serialize(self, serializer)
             }
 
-            fn read<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+            fn read<'de, D: serde::Deserializer<'de>>(deserializer: D) -> ::core::result::Result<Self, D::Error> {
                 <$form>::deserialize(deserializer)
             }
         }

@@ -1,17 +1,20 @@
 //! The influence function of a material.
 
+mod tuned;
+
 use pericles::family::VolumeCorrection;
 use pericles::kernel::{ActsOn, ClassOffset, ClassTable, Influence, InfluenceFunction};
 use pericles::material::StressState;
 use pericles_deck_derive::{DeckKeys, DeckTable, DeckWords};
-use pericles_dispersion::tuning::{Combination, Method, ScalingModel, TunedTable, Tuning, Weights};
-use serde::{Deserialize, Serialize};
+use pericles_dispersion::tuning::{TunedTable, Tuning};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use self::tuned::tuned;
 use crate::declaration::DeckTable;
 use crate::fault::Fault;
-use crate::form::described;
+use crate::form::{Described, described};
 use crate::quantity::Quantity;
-use crate::range::{POSITIVE, Range};
 use crate::reader::{Item, Table};
 
 /// Discretisation for which an influence function is made; none where the deck is invalid.
@@ -254,99 +257,6 @@ fn class(row: &Item<'_>, setting: &Setting) -> Option<(ClassOffset, f64)> {
     Some((offset, value?))
 }
 
-/// Options of tuned kernels; the scope is the dimension of the body.
-#[derive(Serialize, Deserialize, DeckTable)]
-#[serde(remote = "Tuning", deny_unknown_fields)]
-#[deck(remote = Tuning, scope = Option<usize>)]
-struct TuningForm {
-    /// tuned: functional of the dispersion residual R = ω² − V²|k|² on the boundary of the irreducible Brillouin
-    /// zone that is minimised or set to zero. `least-squares`: ∮ R²; `point-collocation`: R at points;
-    /// `subdomain-collocation`: ∫ R over segments; `galerkin`: ∫ w R with the contributions w of the classes to ω²;
-    /// `galerkin-literal`: 1D only, all weights w from the classes; `absolute`: ∮ |R|.
-    #[serde(with = "crate::form")]
-    #[deck(default = Method::ALL[0])]
-    method: Method,
-    /// tuned: how the residuals of pressure waves (p) and shear waves (s) enter the functional F. `separated`: Σ
-    /// F(R_p)² + F(R_s)²; `absolute`: Σ F(|R_p| + |R_s|)²; `signed-sum`: F(R_p + R_s) = 0, mostly unstable. method
-    /// = "least-squares" needs `separated`.
-    #[serde(with = "crate::form")]
-    #[deck(default = Combination::ALL[0])]
-    combination: Combination,
-    #[serde(with = "crate::form")]
-    #[deck(flatten)]
-    weights: Weights,
-    /// tuned: lower bound of the coefficients. "auto": none if the unconstrained kernel is stable, otherwise 0 (3D,
-    /// and some horizons from 4 spacings in 2D); "none": no bound, unstable kernels are rejected; or a number.
-    /// Bodies whose bonds break need a positive bound such as 0.5.
-    #[serde(default)]
-    #[deck(flatten, key = "lower_bound", with = lower_bound)]
-    lower_bound: Option<f64>,
-}
-
-#[derive(Serialize, Deserialize, DeckTable)]
-#[serde(remote = "Weights", deny_unknown_fields)]
-#[deck(remote = Weights, scope = Option<usize>)]
-struct WeightsForm {
-    /// tuned, 2D and 3D: weight of the residuals of pressure waves.
-    #[deck(
-        key = "pressure_weight",
-        range = POSITIVE,
-        default = 1.0,
-        forbid_if(scope == Some(1), ONE_WAVE)
-    )]
-    pressure: f64,
-    /// tuned, 2D and 3D: weight of the residuals of shear waves.
-    #[deck(
-        key = "shear_weight",
-        range = POSITIVE,
-        default = 1.0,
-        forbid_if(scope == Some(1), ONE_WAVE)
-    )]
-    shear: f64,
-    /// tuned: decay wave number of the weight exp(−(|k| Δx/decay)²) of the residual at wave vector k, in rad per
-    /// spacing; emphasises long waves. "none": equal weights, as published.
-    #[serde(default)]
-    #[deck(range = DECAYS, none = NONE, default = Some(Weights::DECAY))]
-    decay: Option<f64>,
-}
-
-described!(Tuning: TuningForm, Weights: WeightsForm);
-
-const NONE: &str = "none";
-const AUTO: &str = "auto";
-const ONE_WAVE: &str = "weights have no effect on a bar, which has pressure waves only";
-const DECAYS: Range =
-    POSITIVE.described("a positive number of rad per spacing (usual: 1), or \"none\"");
-
-/// Reads the lower bound; none also for "auto", which means no bound if the kernel is stable without one, otherwise zero.
-fn lower_bound<S>(table: &Table<'_>, _: S) -> Option<Option<f64>> {
-    match table.optional("lower_bound") {
-        Some(item) if item.is_keyword(AUTO) || item.is_keyword(NONE) => Some(None),
-        Some(item) => item.quantity(Quantity::Number).map(Some),
-        None => {
-            table.record("lower_bound", AUTO);
-            Some(None)
-        }
-    }
-}
-
-/// Optimises the coefficients for this grid.
-fn tuned(table: &Table<'_>, tuning: Tuning, setting: &Setting) -> Option<TunedTable> {
-    let bound = table.optional("lower_bound");
-    let is_automatic = bound.is_none_or(|item| item.word() == Some(AUTO));
-    let spacing = setting.spacing?;
-    let ratio = setting.horizon? / spacing;
-    let model = table.accept(ScalingModel::new(
-        setting.state?,
-        ratio,
-        setting.correction?,
-    ))?;
-    table.accept(match is_automatic {
-        true => model.tune_stable(tuning),
-        false => model.tune(tuning),
-    })
-}
-
 fn pair(row: &Item<'_>, quantity: Quantity) -> Option<(f64, f64)> {
     let items = row.exactly(2, "a pair [r, value]")?;
     let (r, value) = (
@@ -354,4 +264,68 @@ fn pair(row: &Item<'_>, quantity: Quantity) -> Option<(f64, f64)> {
         items[1].quantity(Quantity::Number),
     );
     Some((r?, value?))
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Influence", deny_unknown_fields)]
+struct InfluenceForm {
+    #[serde(with = "crate::form")]
+    function: InfluenceFunction,
+    #[serde(with = "crate::form")]
+    acts_on: ActsOn,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(
+    remote = "InfluenceFunction",
+    rename_all = "snake_case",
+    deny_unknown_fields
+)]
+enum InfluenceFunctionForm {
+    Constant,
+    Conical,
+    Inverse,
+    Power {
+        exponent: f64,
+    },
+    Gaussian {
+        length: f64,
+        #[serde(default)]
+        cutoff: Option<f64>,
+    },
+    Tabulated {
+        table: Vec<(f64, f64)>,
+    },
+    Cosines {
+        wavenumber: f64,
+        coefficients: Vec<f64>,
+    },
+    Classes(#[serde(with = "crate::form")] ClassTable),
+}
+
+described!(Influence: InfluenceForm, InfluenceFunction: InfluenceFunctionForm);
+
+/// Serialised form of a table of lattice classes.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ClassTableForm {
+    dimension: usize,
+    spacing: f64,
+    table: Vec<(ClassOffset, f64)>,
+}
+
+impl Described for ClassTable {
+    fn write<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let form = ClassTableForm {
+            dimension: self.dimension(),
+            spacing: self.spacing(),
+            table: self.entries().to_vec(),
+        };
+        form.serialize(serializer)
+    }
+
+    fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let form = ClassTableForm::deserialize(deserializer)?;
+        Self::new(form.dimension, form.spacing, &form.table).map_err(D::Error::custom)
+    }
 }
