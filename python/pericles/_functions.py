@@ -282,6 +282,7 @@ def run(
     out: str | os.PathLike[str] | None = None,
     force: bool = False,
     progress: bool = False,
+    device: str | None = None,
 ) -> Result:
     """Run a deck as the program does: with its output folder.
 
@@ -297,6 +298,9 @@ def run(
         Replace results in the folder.
     progress : bool
         Show progress; not available for decks with ``[[step]]``.
+    device : str, optional
+        Processor of the steps: ``"cpu"``, ``"gpu"``, or ``"gpu:1"`` for a graphics processor of ``pericles devices``; needs a
+        package with the feature ``gpu``. By default that of the deck.
 
     Returns
     -------
@@ -310,7 +314,7 @@ def run(
     UnstableError
         The run became unstable; ``result`` has the results before.
     """
-    deck = as_deck(deck, set)
+    deck = as_deck(deck, {**(set or {}), **_device(device)})
     stem = Path(".") / deck.stem if out is None else None
     if deck.steps:
         made = _pericles.run_steps(deck._core(), None if out is None else Path(out), stem or Path(), force)
@@ -325,6 +329,16 @@ def run(
         folder = core.folder
     assert folder is not None, "given above"
     return Result.open(folder)
+
+
+def _device(device: str | None) -> dict[str, Any]:
+    """Return the keys of a deck that choose a processor."""
+    if device is None:
+        return {}
+    kind, colon, number = device.partition(":")
+    if colon and not number.isdigit():
+        raise PericlesError(f'device="{device}"; allowed: "cpu", "gpu" or "gpu:N" with the number of a graphics processor')
+    return {"run.device": kind, **({"run.adapter": int(number)} if colon else {})}
 
 
 def open_(folder: str | os.PathLike[str]) -> Result | Sweep:

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::time::Duration;
 
-use pericles_run::Cancel;
+use pericles_run::{Cancel, Means};
 use pyo3::prelude::*;
 
 use crate::errors;
@@ -35,6 +35,15 @@ pub fn enter() -> PyResult<()> {
 pub fn after_fork() {
     if USED.load(Ordering::Relaxed) {
         FORKED.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Returns cache, memory and devices for building and running a model.
+pub fn means() -> Means {
+    Means {
+        #[cfg(feature = "command-line")]
+        devices: pericles_cli::graphics_processors(),
+        ..Means::default()
     }
 }
 

@@ -11,13 +11,13 @@ use pericles::observe::Schedule;
 use pericles::space::{ListedPoints, PointCloud};
 use pericles_deck::{BuildError, Fault, KeyPath, Remark};
 use pericles_io::{OutputFolder, in_user_order};
-use pericles_run::{Assembled, Discretisation, Means, Resources, Source, assemble, discretise};
+use pericles_run::{Assembled, Discretisation, Resources, Source, assemble, discretise};
 use pyo3::prelude::*;
 use pyo3::sync::MutexExt;
 
 use crate::arrays::{Selection, component_major, in_cloud_order, owned};
 use crate::deck::Deck;
-use crate::entry::waiting;
+use crate::entry::{means, waiting};
 use crate::errors::{self, plain};
 use crate::simulation::{Plan, Simulation};
 use crate::values::{FunctionValues, Functions, Step, Trouble};
@@ -163,7 +163,7 @@ fn built(
     sets: &[NumberedSet],
 ) -> PyResult<(Discretisation, Assembled)> {
     let mut kept = None;
-    let made = Assembled::made(source, &Means::default(), &mut |_| {}, |resources| {
+    let made = Assembled::made(source, &means(), &mut |_| {}, |resources| {
         let given = |_: &std::path::Path, _: usize, _: u64| Ok(listed.cloned().unwrap_or_default());
         let resources = match listed {
             None => *resources,
@@ -448,7 +448,7 @@ impl Model {
                     let assemble = |resources: &Resources<'_>| {
                         assemble(source.model(), discretisation, resources)
                     };
-                    Assembled::made(&source, &Means::default(), &mut |_| {}, assemble)
+                    Assembled::made(&source, &means(), &mut |_| {}, assemble)
                         .map_err(errors::of_run)?
                 }
             };

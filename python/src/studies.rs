@@ -8,12 +8,12 @@ use pericles_io::OutputFolder;
 use pericles_run::fit::{FitEnd, FitEvent, Plan, Question, Wanted};
 use pericles_run::sequence;
 use pericles_run::sweep::{self, Axis, Settings, SweepEvent, SweepResults};
-use pericles_run::{Cancel, InitialState, Means, RunError};
+use pericles_run::{Cancel, InitialState, RunError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::deck::Deck;
-use crate::entry::{cancellable, enter, guarded};
+use crate::entry::{cancellable, enter, guarded, means};
 use crate::errors::{of_io, of_run, plain};
 
 /// Creates the folder `out`, or a numbered folder beginning with `stem`.
@@ -30,7 +30,7 @@ fn settings(jobs: Option<NonZeroUsize>) -> Settings {
     let cores = std::thread::available_parallelism().map_or(1, usize::from);
     Settings {
         threads: jobs.map_or(1, |jobs| cores.div_ceil(jobs.get())),
-        means: Means::default(),
+        means: means(),
         deadline: None,
     }
 }
@@ -47,7 +47,7 @@ pub fn run_steps(
     let (text, cancel) = (deck.text().clone(), Cancel::new());
     let stop = cancel.clone();
     cancellable(py, &cancel, move || {
-        let means = Means::default();
+        let means = means();
         let plan = sequence::Plan::new(text, None).map_err(of_run)?;
         let plan = plan.ok_or_else(|| plain("the deck has no steps"))?;
         plan.check(InitialState::Model, &means, &mut |_| {})

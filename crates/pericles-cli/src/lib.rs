@@ -63,6 +63,11 @@ use processes::Processes;
 /// built outside a checkout and the builder did not name it in the variable `PERICLES_COMMIT`.
 pub const COMMIT: Option<&str> = option_env!("PERICLES_SOURCE_COMMIT");
 
+/// Returns the graphics processors for runs by other programs; `None` without the feature `gpu`.
+pub fn graphics_processors() -> Option<std::sync::Arc<dyn pericles_run::Devices>> {
+    devices::devices()
+}
+
 /// Parses the command line. If a deck is given without a command, advises `pericles run`.
 ///
 /// # Errors
