@@ -244,9 +244,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     let checkpoint = root
         .table_or_empty("checkpoint")
         .and_then(|table| Checkpoint::read_table(table, ()));
-    let run = root
-        .table_or_empty("run")
-        .and_then(|table| Processor::read_table(table, ()));
+    let run = root.maybe("run", |item| Processor::read(&item, ()));
     root.finish();
     let (materials, assignments, interfaces) = several?;
     Some(Model {
@@ -270,7 +268,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
         time: time?,
         output: output?,
         checkpoint: checkpoint?,
-        run: run?,
+        run: run?.unwrap_or_default(),
     })
 }
 

@@ -145,7 +145,7 @@ pub struct Model {
     #[serde(default)]
     pub checkpoint: Checkpoint,
     /// `[run]`
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Processor::is_usual")]
     pub run: Processor,
 }
 

@@ -24,6 +24,13 @@ pub struct Processor {
     pub precision: DevicePrecision,
 }
 
+impl Processor {
+    /// Returns whether it is that of a deck without `[run]`.
+    pub(crate) fn is_usual(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// Kinds of processors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, DeckWords)]
 #[serde(rename_all = "kebab-case")]

@@ -5,6 +5,7 @@ mod common;
 mod absorbing;
 mod check_json;
 mod contact;
+mod devices;
 mod dispersion;
 mod examples;
 mod faults;

@@ -160,6 +160,10 @@ to = [0, 1]
 reference = { expression = "x + t" }
 [checkpoint]
 wall = 1
+[run]
+device = "gpu"
+adapter = 1
+precision = "mixed"
 "#;
 
 const BLOCK: &str = r#"

@@ -1,6 +1,7 @@
 //! Tests of the engine as one program, so that generic loops are compiled once for all of them.
 
 mod arguments;
+mod batches;
 mod builder;
 #[path = "../common/mod.rs"]
 mod common;
