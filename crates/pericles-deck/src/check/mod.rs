@@ -7,6 +7,7 @@ mod contact;
 use pericles::material::StressState;
 
 use crate::assign::{AssignScope, Assignable};
+use crate::body::piece_path;
 use crate::crack::CrackScope;
 use crate::declaration::{Check, DeckValue};
 use crate::exact::ExactScope;
@@ -94,8 +95,19 @@ impl Check {
         let others = model.materials.iter().map(|other| other.name.as_str());
         let names: Vec<&str> = own.into_iter().chain(others).collect();
         let allowed = "allowed: the name of a material of the body";
-        for (path, _, name) in model.assigned_materials() {
-            self.within(names.contains(&name), path, name, allowed);
+        let assigned = model.assignments.iter().enumerate();
+        let assigned = assigned.map(|(k, assignment)| {
+            let path = KeyPath::from("assign").index(k);
+            (path, &assignment.material)
+        });
+        let pieces = solid.map_or(&[][..], |solid| solid.shape.pieces());
+        let pieces = pieces.iter().enumerate();
+        let pieces = pieces.map(|(k, piece)| (piece_path(k), &piece.material));
+        for (path, material) in assigned.chain(pieces) {
+            if let Some(name) = material {
+                let known = names.contains(&name.as_str());
+                self.within(known, path.key("material"), name, allowed);
+            }
         }
         let Some(solid) = solid else { return };
         for other in &model.materials {
