@@ -9,6 +9,13 @@ use pericles::{Body, PericlesError};
 
 use crate::verlet::Gpu;
 
+/// Largest number of steps of a batch.
+const LONGEST: u64 = 100;
+/// Time of a batch, s.
+const TIME: f64 = 0.1;
+/// Number of batches, of which the shortest counts.
+const BATCHES: usize = 3;
+
 /// Measured speed of a device.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Speed {
@@ -31,7 +38,7 @@ impl Speed {
 
 /// Measures the steps of a block: the shortest of several batches after a first one.
 pub(crate) fn measured(gpu: &Gpu, edge: usize) -> Result<Speed, PericlesError> {
-    let (spacing, batches) = (1e-3, 3);
+    let spacing = 1e-3;
     let size = edge as f64 * spacing;
     let block = Grid::block([size; 3], spacing).points()?;
     let steel = BondMaterial::new(ElasticModulus::Young(210e9), 7850.0, 3.015 * spacing);
@@ -44,20 +51,23 @@ pub(crate) fn measured(gpu: &Gpu, edge: usize) -> Result<Speed, PericlesError> {
     }
     state.start(&mut system);
     let bonds = system.operator().directed_bonds();
-    let steps = (200_000_000 / bonds.max(1)).clamp(2, 50);
-    let mut device = gpu.device(&system, dt, steps as usize)?;
-    let mut best = f64::INFINITY;
-    for batch in 0..=batches {
+    let mut device = gpu.device(&system, dt, LONGEST as usize)?;
+    let mut batch = |steps: u64| {
         let start = Instant::now();
         device.advance(&mut system, &mut state, dt, steps)?;
-        if batch > 0 {
-            best = best.min(start.elapsed().as_secs_f64());
-        }
+        Ok::<f64, PericlesError>(start.elapsed().as_secs_f64() / steps as f64)
+    };
+    // The first batch uploads the body.
+    batch(1)?;
+    let steps = ((TIME / batch(2)?) as u64).clamp(2, LONGEST);
+    let mut best = f64::INFINITY;
+    for _ in 0..BATCHES {
+        best = best.min(batch(steps)?);
     }
     Ok(Speed {
         points: system.points(),
         bonds,
         steps,
-        step: best / steps as f64,
+        step: best,
     })
 }

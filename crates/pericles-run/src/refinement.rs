@@ -234,14 +234,16 @@ pub fn seconds_per_step(
         Ok::<u64, PericlesError>(state.step - first)
     };
     let mut most = most.min(MOST);
-    // The first steps are slower because of cold caches and sleeping threads.
-    if most > batch {
-        most -= advance(most)?;
+    // The first step is slower because of cold caches and sleeping threads.
+    if most > 1 {
+        most -= advance(1)?;
     }
     let began = Instant::now();
-    let mut steps = 0;
+    let (mut steps, mut next) = (0, 1);
     while steps < most && began.elapsed() < longest {
-        steps += advance(most - steps)?;
+        steps += advance(next.min(most - steps))?;
+        // Batches grow, so that a slow device does not compute a long one.
+        next = batch.min(2 * next);
     }
     Ok(began.elapsed().as_secs_f64() / steps as f64)
 }
