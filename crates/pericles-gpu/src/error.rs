@@ -28,7 +28,7 @@ pub enum GpuError {
     },
     /// A part of the run that devices do not compute.
     #[error(
-        "this run is not possible on a graphics processor: {reason}; remove it, or run without --device"
+        "this run is not possible on a graphics processor: {reason}; change the deck, or use --device cpu"
     )]
     NotSupported {
         /// What it is.

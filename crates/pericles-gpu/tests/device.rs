@@ -7,7 +7,7 @@ use pericles::boundary::{DampedSteps, DampingLayer, DampingProfile, TimeTable};
 use pericles::family::EndRule;
 use pericles::material::{BondFailure, GivenConstants, LinearSolid, StateInfluence};
 use pericles::observe::Energies;
-use pericles::operator::{BondForm, LinearSolidBody};
+use pericles::operator::{BondForm, LinearSolidBody, StencilLaw};
 use pericles::prelude::*;
 use pericles::space::Face;
 use pericles::time::{Device, Integrator, State, VelocityVerlet};
@@ -567,15 +567,7 @@ fn the_shader_equals_plain_loops_of_the_processor() {
                 let pull = if t.abs() > 0.02 {
                     t / ((1.0 + t) + (1.0 + t).sqrt())
                 } else {
-                    const PHI: [f64; 7] = [
-                        0.5,
-                        -0.3750000000013755,
-                        0.3125000000012991,
-                        -0.27343747249067285,
-                        0.2460937240188067,
-                        -0.22572346562446355,
-                        0.20960254454644783,
-                    ];
+                    const PHI: [f64; 7] = StencilLaw::PHI;
                     let mut sum = PHI[6];
                     for coefficient in PHI[..6].iter().rev() {
                         sum = sum * t + coefficient;

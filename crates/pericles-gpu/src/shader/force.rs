@@ -10,29 +10,6 @@ use pericles::operator::StencilLaw;
 use crate::body::{Body, Bond, Critical};
 use crate::precision::Precision;
 
-/// Coefficients of φ(t)/t = 1/((1+t) + √(1+t)) in ascending order: the polynomial of the loops of the processor, whose relative
-/// error is below 1e-14 for |t| ≤ 0.02.
-const PHI: [f64; 7] = [
-    0.5,
-    -0.3750000000013755,
-    0.3125000000012991,
-    -0.27343747249067285,
-    0.2460937240188067,
-    -0.22572346562446355,
-    0.20960254454644783,
-];
-/// Coefficients of ψ(t)/t = 1/(1 + √(1+t)), likewise.
-const PSI: [f64; 7] = [
-    0.5,
-    -0.12500000000009168,
-    0.06250000000007641,
-    -0.039062498166270054,
-    0.027343748471866127,
-    -0.020516980175525664,
-    0.0161209210780157,
-];
-/// Largest |t| of the polynomials.
-const REACH: f64 = 0.02;
 /// Bonds whose dissipated energy exceeds this multiple of their energy at the critical stretch, or is negative, need a shorter
 /// step: the processor corrects the motion of their ends.
 const RESOLVED: f64 = 4.0;
@@ -117,12 +94,12 @@ impl Writer<'_> {
             let _ = writeln!(
                 text,
                 "fn {name}(t: real) -> real {{\n    if (abs(t) > {}) {{\n        return t / {exact};\n    }}\n    return {polynomial} * t;\n}}",
-                number(REACH)
+                number(StencilLaw::REACH)
             );
         };
-        function("pull", &PHI, "((1 + t) + sqrt(1 + t))");
+        function("pull", &StencilLaw::PHI, "((1 + t) + sqrt(1 + t))");
         if self.body.is_solid() {
-            function("stretch_of", &PSI, "(1 + sqrt(1 + t))");
+            function("stretch_of", &StencilLaw::PSI, "(1 + sqrt(1 + t))");
         }
     }
 

@@ -1,5 +1,8 @@
 //! Forces of the stencil kernel as data, for extension crates that evaluate them themselves.
 
+use super::fast_law::{PHI, VectorLaw};
+use super::state_based::PSI;
+use crate::material::BondStretch;
 use crate::neighbourhood::{Lattice, Neighbourhood};
 
 /// The kinematics of the bonds of a stencil: stretch and direction.
@@ -9,6 +12,16 @@ pub enum StencilLaw {
     Linear,
     /// [`BondStretch`](crate::material::BondStretch), finite displacements.
     BondStretch,
+}
+
+impl StencilLaw {
+    /// Coefficients of φ(t)/t, ascending, for |t| ≤ [`StencilLaw::REACH`]: φ = 1 − |ξ|/|ξ+η| of a bond with the strain
+    /// t = |ξ+η|²/|ξ|² − 1.
+    pub const PHI: [f64; 7] = PHI;
+    /// Coefficients of ψ(t)/t, likewise: ψ = |ξ+η|/|ξ| − 1.
+    pub const PSI: [f64; 7] = PSI;
+    /// Largest |t| of these polynomials.
+    pub const REACH: f64 = BondStretch::REACH;
 }
 
 /// Critical stretches of the bonds of a stencil.

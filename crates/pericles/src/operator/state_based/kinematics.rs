@@ -63,7 +63,7 @@ pub struct SmallStrain;
 
 /// Coefficients of ψ(t)/t = 1/(1 + √(1+t)), ascending: the polynomial through its values at the seven
 /// Chebyshev nodes of |t| ≤ 0.02, computed with 50 digits; relative error below 6e-16 there.
-const PSI: [f64; 7] = [
+pub(in crate::operator) const PSI: [f64; 7] = [
     0.5,
     -0.12500000000009168,
     0.06250000000007641,
