@@ -237,10 +237,7 @@ fn device_error(error: &RunError) -> Option<&DeviceError> {
         } => source,
         _ => return None,
     };
-    match error {
-        PericlesError::Device(error) => Some(error),
-        _ => None,
-    }
+    error.extension()
 }
 
 /// Returns the exit status for an error of a run.

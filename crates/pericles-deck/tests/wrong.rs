@@ -59,7 +59,7 @@ const WRONG: &[Wrong] = &[
     // Steps.
     wrong("[output]", "[run]\ndevice = \"tpu\"\n[output]", (38, 10), "\"tpu\"", &["unknown device", "`cpu`"]),
     wrong("[output]", "[run]\nadapter = 1\n[output]", (38, 1), "adapter", &["not allowed", "device = \"gpu\""]),
-    wrong("[output]", "[run]\ndevice = \"gpu\"\nprecision = \"half\"\n[output]", (39, 13), "\"half\"", &["unknown precision of a device", "`mixed`"]),
+    wrong("[output]", "[run]\ndevice = \"gpu\"\nprecision = \"half\"\n[output]", (39, 13), "\"half\"", &["unknown precision of a device", "\"mixed\""]),
     wrong("[output]", "[[step]]\nmaterial = { density = 1 }\n[output]", (38, 1), "material", &["unknown key `material` in [[step]]", "`time`, `initial`, `constraint`"]),
     wrong("[output]", "[[step]]\nname = \"a/b\"\n[output]", (38, 8), "\"a/b\"", &["\"a/b\"", "letters, digits, - and _"]),
     wrong("[output]", "[step]\nname = \"a\"\n[output]", (37, 2), "step", &["expected a list of tables, found a table"]),

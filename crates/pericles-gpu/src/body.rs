@@ -7,8 +7,8 @@ use pericles::neighbourhood::{GridLayout, Lattice, Neighbourhood};
 use pericles::operator::{CriticalStretches, StencilData, StencilLaw, StencilMaterial};
 use pericles::{PointScalar, System};
 
+use crate::flags::{GUIDED, HELD, MATERIAL, OWN};
 use crate::precision::Units;
-use crate::shader::{GUIDED, HELD, MATERIAL, OWN};
 
 /// Nodes of a chunk.
 const LANES: usize = 8;

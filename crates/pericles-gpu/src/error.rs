@@ -61,13 +61,14 @@ pub enum GpuError {
 impl From<GpuError> for PericlesError {
     fn from(error: GpuError) -> Self {
         let text = error.to_string();
-        Self::Device(match error {
+        let error = match error {
             GpuError::NoAdapter | GpuError::NoSuchAdapter { .. } | GpuError::NoDoubles { .. } => {
                 DeviceError::Missing(text)
             }
             GpuError::NotSupported { .. } => DeviceError::Unsuitable(text),
             GpuError::Memory { .. } => DeviceError::Memory(text),
             GpuError::Lost { .. } => DeviceError::Failed(text),
-        })
+        };
+        error.into()
     }
 }

@@ -31,6 +31,7 @@ mod body;
 mod ceiling;
 mod entries;
 mod error;
+mod flags;
 mod limits;
 mod precision;
 mod shader;

@@ -485,7 +485,7 @@ fn unsupported_runs_are_errors() {
         .plan(&list, &VelocityVerlet, 1e-8)
         .unwrap_err();
     assert!(
-        matches!(error, PericlesError::Device(DeviceError::Unsuitable(_))),
+        matches!(error.extension(), Some(DeviceError::Unsuitable(_))),
         "{error}"
     );
     assert!(matches!(

@@ -10,20 +10,12 @@ use std::fmt::Write as _;
 
 use crate::body::Body;
 use crate::entries::Entries;
+use crate::flags::{GUIDED, HELD, MATERIAL, OWN};
 use crate::precision::Precision;
 
 const DOUBLE: &str = include_str!("double.wgsl");
 const MIXED: &str = include_str!("mixed.wgsl");
 const STEPS: &str = include_str!("steps.wgsl");
-
-/// Flag of places that are own points.
-pub(crate) const OWN: u32 = 1;
-/// Flag of places whose bonds never break.
-pub(crate) const HELD: u32 = 2;
-/// Flag of places whose first component is constrained; the next two flags belong to the other components.
-pub(crate) const GUIDED: u32 = 4;
-/// Number of bits before the number of the material in the flags.
-pub(crate) const MATERIAL: u32 = 8;
 
 /// Size of the workgroups of loops over lists.
 const LIST_GROUP: u32 = 64;

@@ -1,5 +1,6 @@
 //! Boundary conditions: loads, prescribed motions, damping layers and other boundaries with a state.
 
+mod components;
 mod damping;
 mod function;
 mod load;
@@ -10,11 +11,12 @@ mod reaction;
 mod table;
 mod values;
 
+pub use components::MotionComponent;
 pub use damping::{DampedSteps, DampingLayer, DampingProfile};
 pub use function::{TimeCourse, TimeFunction};
 pub use load::{ALWAYS, FieldFunction, Load, LoadDensity};
 pub use loading::ProportionalLoading;
-pub use motion::{AxisMotion, MotionComponent, MotionKind, PrescribedMotion, Trajectory};
+pub use motion::{AxisMotion, MotionKind, PrescribedMotion, Trajectory};
 pub use rayleigh::{RayleighDamping, RayleighRates, Stiffness, StiffnessProduct};
 pub use table::TimeTable;
 pub use values::PointValues;

@@ -45,19 +45,6 @@ pub enum AxisMotion {
     Values(Arc<dyn PointValues>),
 }
 
-/// A prescribed component of a point: its displacement is start + amplitude · unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct MotionComponent {
-    /// Entry of the state's arrays.
-    pub entry: usize,
-    /// Entry of the reactions.
-    pub slot: usize,
-    /// Amplitude, m or m/s.
-    pub amplitude: f64,
-    /// Displacement to which the motion adds, m.
-    pub start: f64,
-}
-
 /// Constraint on a set of points along one or more axes, as a closed function of time: displacement and velocity
 /// are exact at the end of every step.
 #[derive(Debug, Clone)]
@@ -76,12 +63,12 @@ pub struct PrescribedMotion {
     pub until: Option<f64>,
     /// Displacement of the points to which the motion adds, per prescribed axis; zero for prescribed displacements that do
     /// not [rise from it](Self::rising_from).
-    start: Vec<f64>,
+    pub(super) start: Vec<f64>,
     /// Reaction force density on the constrained points at the last accepted state, per prescribed axis.
     pub(super) reaction: Vec<f64>,
     /// Components that another constraint prescribes with the same values, as sorted entries of `reaction`: they
     /// belong to the other constraint, so that reactions and work count once.
-    shared: Vec<u32>,
+    pub(super) shared: Vec<u32>,
 }
 
 impl PrescribedMotion {
@@ -359,37 +346,6 @@ impl PrescribedMotion {
             2 => g.derivative(t),
             _ => g.second_derivative(t),
         }
-    }
-
-    /// Returns the prescribed components that no other constraint prescribes; `None` if the motion is not a product of
-    /// amplitudes and [`PrescribedMotion::unit`].
-    pub fn components(&self, cloud_len: usize) -> Option<Vec<MotionComponent>> {
-        let mut components = Vec::new();
-        for (axis, c) in self.axes().enumerate() {
-            for (k, &i) in self.points.iter().enumerate() {
-                let amplitude = match self.along[c].as_ref()? {
-                    AxisMotion::Uniform(amplitude) => *amplitude,
-                    AxisMotion::PerPoint(amplitudes) => amplitudes[k],
-                    AxisMotion::Trajectory { .. } | AxisMotion::Values(_) => return None,
-                };
-                let slot = axis * self.points.len() + k;
-                if self.shared.binary_search(&(slot as u32)).is_err() {
-                    components.push(MotionComponent {
-                        entry: c * cloud_len + i as usize,
-                        slot,
-                        amplitude,
-                        start: self.start[slot],
-                    });
-                }
-            }
-        }
-        Some(components)
-    }
-
-    /// Reaction force densities of the prescribed components at the last accepted state, N/m³, by
-    /// [`MotionComponent::slot`].
-    pub fn reactions_mut(&mut self) -> &mut [f64] {
-        &mut self.reaction
     }
 
     /// Calls `set(entry of the state's arrays, slot, value)` for every prescribed component of the points of `on`

@@ -1,4 +1,4 @@
-//! Errors of extension crates.
+//! Errors of extension crates and of processors beside that of the host.
 
 use super::PericlesError;
 
@@ -9,5 +9,28 @@ impl PericlesError {
             Self::Extension(error) => error.downcast_ref(),
             _ => None,
         }
+    }
+}
+
+/// An error of a processor that computes whole steps, such as a graphics processor.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum DeviceError {
+    /// There is no such processor.
+    #[error("{0}")]
+    Missing(String),
+    /// It does not compute the run.
+    #[error("{0}")]
+    Unsuitable(String),
+    /// It has too little memory.
+    #[error("{0}")]
+    Memory(String),
+    /// It has failed.
+    #[error("{0}")]
+    Failed(String),
+}
+
+impl From<DeviceError> for PericlesError {
+    fn from(error: DeviceError) -> Self {
+        Self::Extension(Box::new(error))
     }
 }

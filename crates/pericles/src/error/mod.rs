@@ -1,13 +1,12 @@
 //! The error type of the library.
 
 mod check;
-mod device;
 mod extension;
 mod strength;
 mod text;
 
 pub use check::positive;
-pub use device::DeviceError;
+pub use extension::DeviceError;
 pub use strength::UnreachableStrength;
 
 use crate::step_kind::{StepKind, schemes_of};
@@ -416,9 +415,6 @@ pub enum PericlesError {
         /// Number of steps of the boundary.
         made_for: u64,
     },
-    /// An error of a processor that computes whole steps.
-    #[error(transparent)]
-    Device(#[from] DeviceError),
     /// An error of an extension crate.
     #[error(transparent)]
     Extension(Box<dyn std::error::Error + Send + Sync>),

@@ -307,17 +307,6 @@ impl Simulation {
         Ok(Outcome::Finished)
     }
 
-    /// Returns the number of steps to the next state that an observer sees, at most the number that the scheme takes at once.
-    fn steps_to_next_visit(&self) -> u64 {
-        let (step, dt, steps) = (self.state.step, self.dt, self.steps);
-        let seen = |step: u64| {
-            let mut schedules = self.observers.iter().map(|scheduled| scheduled.schedule);
-            schedules.any(|schedule| schedule.is_due(step, dt, steps))
-        };
-        let most = self.integrator.steps_at_once().min(steps - step);
-        (1..most).find(|&k| seen(step + k)).unwrap_or(most.max(1))
-    }
-
     /// Waits until the observers have written what they have seen. Otherwise a checkpoint may refer to output that
     /// does not exist yet.
     ///

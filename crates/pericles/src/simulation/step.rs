@@ -6,6 +6,17 @@ use crate::error::PericlesError;
 use crate::interrupt::Interrupt;
 
 impl Simulation {
+    /// Returns the number of steps to the next state that an observer sees, at most the number that the scheme takes at once.
+    pub(super) fn steps_to_next_visit(&self) -> u64 {
+        let (step, dt, steps) = (self.state.step, self.dt, self.steps);
+        let seen = |step: u64| {
+            let mut schedules = self.observers.iter().map(|scheduled| scheduled.schedule);
+            schedules.any(|schedule| schedule.is_due(step, dt, steps))
+        };
+        let most = self.integrator.steps_at_once().min(steps - step);
+        (1..most).find(|&k| seen(step + k)).unwrap_or(most.max(1))
+    }
+
     /// Performs up to `steps` steps; undoes them if they are interrupted, or if the evaluation of a load or motion has failed.
     pub(super) fn step(
         &mut self,
