@@ -1,6 +1,7 @@
 //! Pair laws in vectorised loops: the forces of [`PairForce`] without roots and divisions where possible.
 
 use super::StencilLaw;
+use super::polynomials::{PHI, REACH};
 use crate::lanes::Vector;
 use crate::material::{
     Approximated, BondStretch, CubicBond, CubicFactor, CubicSofteningBond, GreenBond, LinearBond,
@@ -97,26 +98,13 @@ impl VectorLaw for CubicSofteningBond {}
 
 impl<L: CubicBond, T: CubicFactor> VectorLaw for Approximated<L, T> {}
 
-/// Coefficients of φ(t)/t = 1/((1+t) + √(1+t)), ascending: the polynomial through its values at the seven
-/// Chebyshev nodes of
-/// |t| ≤ 0.02, computed with 50 digits; relative error below 8e-15 there.
-pub(super) const PHI: [f64; 7] = [
-    0.5,
-    -0.3750000000013755,
-    0.3125000000012991,
-    -0.27343747249067285,
-    0.2460937240188067,
-    -0.22572346562446355,
-    0.20960254454644783,
-];
-
 /// Rounding error above which the polynomial of degree four is sufficient: its relative error is below 2e-9.
 const SHORT_PHI: f64 = 1e-8;
 
 impl VectorLaw for BondStretch {
     const STENCIL: Option<StencilLaw> = Some(StencilLaw::BondStretch);
 
-    const REACH: f64 = 0.02;
+    const REACH: f64 = REACH;
 
     /// t = η·(2ξ+η)/|ξ|².
     #[inline(always)]

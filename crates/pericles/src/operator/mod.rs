@@ -41,6 +41,7 @@ mod limits;
 mod linearisation;
 mod list;
 mod own_law;
+mod polynomials;
 pub mod pool;
 pub mod prefetch;
 pub mod records;

@@ -1,8 +1,6 @@
 //! Forces of the stencil kernel as data, for extension crates that evaluate them themselves.
 
-use super::fast_law::{PHI, VectorLaw};
-use super::state_based::PSI;
-use crate::material::BondStretch;
+use super::polynomials::{PHI, PSI, REACH};
 use crate::neighbourhood::{Lattice, Neighbourhood};
 
 /// The kinematics of the bonds of a stencil: stretch and direction.
@@ -21,7 +19,7 @@ impl StencilLaw {
     /// Coefficients of ψ(t)/t, likewise: ψ = |ξ+η|/|ξ| − 1.
     pub const PSI: [f64; 7] = PSI;
     /// Largest |t| of these polynomials.
-    pub const REACH: f64 = BondStretch::REACH;
+    pub const REACH: f64 = REACH;
 }
 
 /// Critical stretches of the bonds of a stencil.

@@ -3,7 +3,7 @@
 use crate::lanes::{Vector, dot};
 use crate::material::{BondStretch, LinearBond, PairForce};
 use crate::operator::StencilLaw;
-use crate::operator::fast_law::PHI;
+use crate::operator::polynomials::{PHI, PSI, REACH};
 
 /// The kinematics of a bond of length r = |ξ| in the loops of state-based materials, as a function of a
 /// scalar strain t.
@@ -61,18 +61,6 @@ pub struct FiniteStrain;
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SmallStrain;
 
-/// Coefficients of ψ(t)/t = 1/(1 + √(1+t)), ascending: the polynomial through its values at the seven
-/// Chebyshev nodes of |t| ≤ 0.02, computed with 50 digits; relative error below 6e-16 there.
-pub(in crate::operator) const PSI: [f64; 7] = [
-    0.5,
-    -0.12500000000009168,
-    0.06250000000007641,
-    -0.039062498166270054,
-    0.027343748471866127,
-    -0.020516980175525664,
-    0.0161209210780157,
-];
-
 /// Returns t times the polynomial.
 #[inline(always)]
 fn polynomial<T: Vector>(coefficients: &[f64; 7], t: T) -> T {
@@ -97,7 +85,7 @@ impl Kinematics for FiniteStrain {
     type Measure = BondStretch;
     const STENCIL: StencilLaw = StencilLaw::BondStretch;
     const LINEAR: bool = false;
-    const REACH: f64 = 0.02;
+    const REACH: f64 = REACH;
 
     #[inline(always)]
     fn strain<T: Vector, const D: usize>(xi: [T; D], eta: [T; D], inverse_square: T) -> T {

@@ -33,5 +33,4 @@ mod weight;
 pub use body::LinearSolidBody;
 pub use force::LinearSolidForce;
 pub use grid::LinearSolidGrid;
-pub(super) use kinematics::PSI;
 pub use kinematics::{FiniteStrain, Kinematics, SmallStrain};
