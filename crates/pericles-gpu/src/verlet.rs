@@ -12,7 +12,6 @@ use crate::entries::Entries;
 use crate::error::GpuError;
 use crate::limits::require;
 use crate::precision::{Precision, Units};
-use crate::speed;
 
 /// Largest number of steps of a batch: the state is read by the host after each batch.
 const STEPS: usize = 100;
@@ -46,15 +45,6 @@ impl Gpu {
     /// Returns the adapter.
     pub fn adapter(&self) -> &Adapter {
         &self.adapter
-    }
-
-    /// Measures the directed bonds per second of steps of a block of steel (bond-stretch law, m = 3, `edge`³ points), and returns
-    /// it with the bonds per second of the copies of the state that such a step needs at least.
-    ///
-    /// # Errors
-    /// The driver fails.
-    pub fn speed(&self, edge: usize) -> Result<speed::Speed, PericlesError> {
-        speed::measured(self, edge)
     }
 
     /// Prepares the device for a system in batches of up to `steps` steps.

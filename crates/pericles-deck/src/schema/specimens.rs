@@ -467,7 +467,7 @@ pub(super) const SPECIMENS: &[Specimen] = &[
     specimen(BAR, &["output={ fields = { every = 1 }, history = { interval = 1 }, cracks = { every = 1 }, fragments = { every = 1 }, energy_bound = 1 }"]),
     specimen(BAR, &["output={ fields = { count = 1 }, history = { count = 1 }, cracks = { interval = 1 }, fragments = { interval = 1 } }"]),
     specimen(BAR, &["output.picture=[{ field = 'Damage' }, { field = 'Damage', width = '88 mm' }]", "checkpoint.interval=1"]),
-    specimen(BAR, &["run={ device = 'cpu' }"]),
+    specimen(BAR, &["run={}"]),
     specimen(BAR, &["run={ device = 'gpu' }"]),
     specimen(BAR, &["output.picture=[{ field = 'Damage', format = 'pdf', width = '88 mm', font_size = '8 pt', dpi = 600, colour_map = 'grey', crop = { min = 0, max = 1 }, title = false, background = 'transparent' }]"]),
 ];

@@ -64,9 +64,12 @@ impl Checkpointed for Batches {
     }
 }
 
-/// Steps and displacements that an observer has seen.
+/// Steps with their displacements.
+type States = Vec<(u64, Vec<f64>)>;
+
+/// The states that an observer has seen.
 #[derive(Clone, Default)]
-struct Seen(Arc<Mutex<Vec<(u64, Vec<f64>)>>>);
+struct Seen(Arc<Mutex<States>>);
 
 impl Observer for Seen {
     fn observe(&mut self, snapshot: &Snapshot<'_>) -> std::result::Result<(), ObserveError> {
@@ -86,7 +89,7 @@ impl Checkpointed for Seen {
 
 /// Runs 23 steps with observers of every fourth step and of five times, and returns what they have seen and the number of calls
 /// of the controlling closure.
-fn seen(at_once: u64) -> ([Vec<(u64, Vec<f64>)>; 2], usize) {
+fn seen(at_once: u64) -> ([States; 2], usize) {
     let scheme = move |_: &System| -> Box<dyn Integrator> { Box::new(Batches(at_once)) };
     let mut run = from_rest(loaded(Action::Ramp), &scheme, 4e-8, 23);
     let observers = [Seen::default(), Seen::default()];
