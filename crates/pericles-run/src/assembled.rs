@@ -45,7 +45,7 @@ pub trait Devices: Send + Sync {
     /// Opens the processor that a deck or user wants, whose kind is not [`DeviceKind::Cpu`].
     ///
     /// # Errors
-    /// [`PericlesError::Device`].
+    /// [`DeviceError`], as an extension error.
     fn open(&self, wanted: Processor) -> Result<Arc<dyn Device>, PericlesError>;
 }
 
