@@ -94,7 +94,7 @@ pub(crate) struct Arrays {
 const BONDS_PER_SUBMISSION: u64 = 500_000_000;
 
 /// Returns the bytes of each array for batches of `steps` steps.
-pub(crate) fn sizes(
+fn sizes(
     body: &Body,
     entries: &Entries,
     steps: usize,
@@ -231,6 +231,11 @@ impl Arrays {
 
     fn of(&self, array: Array) -> &wgpu::Buffer {
         &self.arrays[array as usize]
+    }
+
+    /// Returns the memory of all arrays, bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.arrays.iter().map(wgpu::Buffer::size).sum()
     }
 
     /// Copies bytes to an array.

@@ -16,6 +16,8 @@ pub(crate) struct Device {
     body: Body,
     entries: Entries,
     arrays: Arrays,
+    /// Mass of each entry of the state's arrays, kg.
+    masses: Vec<f64>,
     /// The step whose state is in the arrays, if it is that of the host.
     holds: Option<u64>,
 }
@@ -34,8 +36,14 @@ impl Device {
             context,
             body,
             entries,
+            masses: system.masses(),
             holds: None,
         })
+    }
+
+    /// Returns the memory of all arrays, bytes.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.arrays.bytes()
     }
 
     /// States that the host has a state of its own.
@@ -125,14 +133,14 @@ impl Device {
             &mut state.a,
         );
         let books = precision.read_reals(&books);
-        self.entries.close(&books, system, body, times);
+        let masses = &self.masses[..];
+        self.entries.close(&books, (system, masses), body, times);
         system.count_evaluations(times.len() as u64 - 1);
         if !body.breaks() {
             return Ok(());
         }
         let [bits, lost] = self.arrays.read([Array::Bits, Array::Lost])?;
         let lost = precision.read_reals(&lost);
-        let masses = system.masses();
         let Some(force) = stencil(system) else {
             return Ok(());
         };

@@ -4,7 +4,7 @@
 //! on the device. Time functions are evaluated by the host for all steps of a batch.
 
 use pericles::System;
-use pericles::boundary::{Load, PrescribedMotion};
+use pericles::boundary::{Exchange, Load, PrescribedMotion};
 
 use crate::body::Body;
 
@@ -53,6 +53,8 @@ struct Guided {
     of_state: Vec<u32>,
     amplitude: Vec<f64>,
     start: Vec<f64>,
+    /// Density of the point, kg/m³.
+    density: Vec<f64>,
 }
 
 /// All lists of a system.
@@ -261,17 +263,15 @@ impl Entries {
 
     /// Returns the books at the start of a batch: reactions and pulls of the last state.
     pub(crate) fn opened(&self, system: &mut System, body: &Body) -> Vec<f64> {
-        let (n, parts) = (system.points(), self.parts());
+        let parts = self.parts();
         let mut books = vec![0.0; parts.total()];
         let acceleration = body.units.acceleration();
-        let density = system.density().clone();
         let system = system.parts_mut();
         let reactions = &mut books[parts.loads..][..parts.guided];
         for (e, reaction) in reactions.iter_mut().enumerate() {
             let of = &mut system.motions[self.guided.motion[e] as usize];
-            let i = self.guided.of_state[e] as usize % n;
             let force = of.reactions_mut()[self.guided.slot[e] as usize];
-            *reaction = force / density.at(i) / acceleration;
+            *reaction = force / self.guided.density[e] / acceleration;
         }
         let pulls = &mut books[parts.loads + 3 * parts.guided..][..parts.layers];
         for (e, pull) in pulls.iter_mut().enumerate() {
@@ -284,55 +284,62 @@ impl Entries {
     }
 
     /// Adds the work and impulses of a batch to the energy balance, and takes over reactions and pulls. `times` are those of all
-    /// states of the batch.
-    pub(crate) fn close(&self, books: &[f64], system: &mut System, body: &Body, times: &[f64]) {
-        let (n, parts) = (system.points(), self.parts());
+    /// states of the batch, `masses` those of the entries of the state's arrays.
+    pub(crate) fn close(
+        &self,
+        books: &[f64],
+        (system, masses): (&mut System, &[f64]),
+        body: &Body,
+        times: &[f64],
+    ) {
+        let parts = self.parts();
         let units = body.units;
-        let masses = system.masses();
-        let mass = |of_state: u32| masses[of_state as usize];
         let (work, rest) = books.split_at(parts.loads);
         let (motions, layers) = rest.split_at(3 * parts.guided);
-        for number in 0..self.load_count {
-            let terms = (0..parts.loads).filter(|&e| self.loads.of[e] as usize == number);
-            let terms: Vec<usize> = terms.collect();
-            let energy = |e: usize| work[e] * units.energy() * mass(self.loads.of_state[e]);
-            let work = system.domain().sum(terms.len(), |k| energy(terms[k]));
-            let load = &system.loads()[number];
-            let duration = impulse_of(load, times);
-            let mut impulse = [0.0; 3];
-            for (c, impulse) in impulse.iter_mut().enumerate().take(body.dimension) {
-                let own: Vec<usize> = terms
-                    .iter()
-                    .copied()
-                    .filter(|&e| self.loads.of_state[e] as usize / n == c)
+        let durations = system.loads().iter().map(|load| impulse_of(load, times));
+        let durations: Vec<f64> = durations.map(|duration| duration / units.time).collect();
+        let amplitudes = self.loads.amplitude.iter().zip(&self.loads.of);
+        let pushes: Vec<f64> = amplitudes
+            .map(|(amplitude, &load)| amplitude * durations[load as usize])
+            .collect();
+        let part = |list: &'_ [f64], number: usize, length: usize| {
+            list[number * length..][..length].to_vec()
+        };
+        let [loads, guided, damped] = [
+            (&self.loads.of, &self.loads.of_state),
+            (&self.guided.motion, &self.guided.of_state),
+            (&self.layers.of, &self.layers.of_state),
+        ];
+        let books = [
+            (loads, self.load_count, [work.to_vec(), pushes]),
+            (
+                guided,
+                self.motion_count,
+                [1, 2].map(|number| part(motions, number, parts.guided)),
+            ),
+            (
+                damped,
+                self.layer_numbers.len(),
+                [1, 2].map(|number| part(layers, number, parts.layers)),
+            ),
+        ];
+        for ((of, of_state), count, [work, push]) in books {
+            for number in 0..count {
+                let terms = (0..of.len()).filter(|&e| of[e] as usize == number);
+                let terms: Vec<Term> = terms
+                    .map(|e| Term {
+                        entry: of_state[e] as usize,
+                        work: work[e] * units.energy(),
+                        push: push[e] * units.velocity(),
+                    })
                     .collect();
-                let push = |e: usize| {
-                    self.loads.amplitude[e] * units.acceleration() * mass(self.loads.of_state[e])
-                };
-                *impulse = duration * system.domain().sum(own.len(), |k| push(own[k]));
+                book(system, masses, &terms);
             }
-            book(system, work, impulse);
         }
-        for number in 0..self.motion_count {
-            let terms = (0..parts.guided).filter(|&e| self.guided.motion[e] as usize == number);
-            let terms: Vec<usize> = terms.collect();
-            let [work, push] = [1, 2].map(|part| &motions[part * parts.guided..][..parts.guided]);
-            let state = |e: usize| self.guided.of_state[e];
-            self.book_terms(system, body, (&terms, &state), [work, push], &mass);
-        }
-        for number in 0..self.layer_numbers.len() {
-            let terms = (0..parts.layers).filter(|&e| self.layers.of[e] as usize == number);
-            let terms: Vec<usize> = terms.collect();
-            let [work, push] = [1, 2].map(|part| &layers[part * parts.layers..][..parts.layers]);
-            let state = |e: usize| self.layers.of_state[e];
-            self.book_terms(system, body, (&terms, &state), [work, push], &mass);
-        }
-        let density = system.density().clone();
         let system = system.parts_mut();
         for (e, reaction) in motions[..parts.guided].iter().enumerate() {
-            let i = self.guided.of_state[e] as usize % n;
             let of = &mut system.motions[self.guided.motion[e] as usize];
-            let force = reaction * units.acceleration() * density.at(i);
+            let force = reaction * units.acceleration() * self.guided.density[e];
             of.reactions_mut()[self.guided.slot[e] as usize] = force;
         }
         for (e, pull) in layers[..parts.layers].iter().enumerate() {
@@ -342,37 +349,26 @@ impl Entries {
             }
         }
     }
-
-    /// Adds the work and impulse of some terms to the energy balance.
-    fn book_terms(
-        &self,
-        system: &mut System,
-        body: &Body,
-        (terms, of_state): (&[usize], &dyn Fn(usize) -> u32),
-        [work, push]: [&[f64]; 2],
-        mass: &dyn Fn(u32) -> f64,
-    ) {
-        let (n, units) = (system.points(), body.units);
-        let weight = |e: usize| mass(of_state(e));
-        let sum = |terms: &[usize], of: &dyn Fn(usize) -> f64| {
-            let values: Vec<f64> = terms.iter().map(|&e| of(e)).collect();
-            system.domain().sum(values.len(), |k| values[k])
-        };
-        let energy = sum(terms, &|e| work[e] * units.energy() * weight(e));
-        let impulse = std::array::from_fn(|c| {
-            let own = terms
-                .iter()
-                .copied()
-                .filter(|&e| of_state(e) as usize / n == c);
-            let own: Vec<usize> = own.collect();
-            sum(&own, &|e| push[e] * units.velocity() * weight(e))
-        });
-        book(system, energy, impulse);
-    }
 }
 
-fn book(system: &mut System, work: f64, impulse: [f64; 3]) {
-    system.book_exchange(pericles::boundary::Exchange { work, impulse });
+/// Work and impulse per mass on a component of a point in a batch.
+struct Term {
+    /// Entry of the state's arrays.
+    entry: usize,
+    work: f64,
+    push: f64,
+}
+
+/// Adds the work and impulse of a load, constraint or layer to the energy balance.
+fn book(system: &mut System, masses: &[f64], terms: &[Term]) {
+    let (n, domain) = (system.points(), system.domain());
+    let impulse = std::array::from_fn(|c| {
+        let own = terms.iter().filter(|term| term.entry / n == c);
+        let own: Vec<&Term> = own.collect();
+        domain.sum(own.len(), |k| own[k].push * masses[own[k].entry])
+    });
+    let work = domain.sum(terms.len(), |k| terms[k].work * masses[terms[k].entry]);
+    system.book_exchange(Exchange { work, impulse });
 }
 
 /// Returns ∫ g dt of the time function of a load by the rule of the steps.
@@ -415,6 +411,9 @@ fn guided(system: &System, body: &Body) -> Guided {
                 .amplitude
                 .push(component.amplitude / body.units.length);
             guided.start.push(component.start / body.units.length);
+            guided
+                .density
+                .push(system.density().at(component.entry % n));
         }
     }
     guided

@@ -2,6 +2,7 @@
 
 use pericles::StepKind;
 use pericles::System;
+use pericles::operator::StencilData;
 use pericles::time::Integrator;
 
 use crate::error::GpuError;
@@ -11,6 +12,8 @@ struct Limit {
     reason: &'static str,
     applies: fn(&System, &dyn Integrator) -> bool,
 }
+
+const OTHER_FORCE: &str = "the force is not that of linear or bond-stretch bonds or of a linear peridynamic solid on a regular lattice at constant temperature (softening, viscous, plastic and correspondence materials, meshes, listed points and surfaces are computed by the processor)";
 
 /// All limits.
 const LIMITS: &[Limit] = &[
@@ -23,7 +26,7 @@ const LIMITS: &[Limit] = &[
         applies: |system, _| system.domain().is_divided(),
     },
     Limit {
-        reason: "the force is not that of linear or bond-stretch bonds or of a linear peridynamic solid on a regular lattice at constant temperature (softening, viscous, plastic and correspondence materials, meshes, listed points and surfaces are computed by the processor)",
+        reason: OTHER_FORCE,
         applies: |system, _| system.operator().capabilities().stencil.is_none(),
     },
     Limit {
@@ -67,13 +70,19 @@ pub fn unsupported(system: &System, integrator: &dyn Integrator) -> Vec<&'static
     limits.map(|limit| limit.reason).collect()
 }
 
-/// Checks that devices compute a run.
+/// Returns the force of a run as data.
 ///
 /// # Errors
-/// The first reason why they do not.
-pub(crate) fn require(system: &System, integrator: &dyn Integrator) -> Result<(), GpuError> {
-    match unsupported(system, integrator).first() {
-        None => Ok(()),
-        Some(&reason) => Err(GpuError::NotSupported { reason }),
+/// The first reason why devices do not compute the run.
+pub(crate) fn supported<'a>(
+    system: &'a System,
+    integrator: &dyn Integrator,
+) -> Result<StencilData<'a>, GpuError> {
+    let reasons = unsupported(system, integrator);
+    match (reasons.first(), system.operator().capabilities().stencil) {
+        (None, Some(force)) => Ok(force.data()),
+        (reason, _) => Err(GpuError::NotSupported {
+            reason: reason.copied().unwrap_or(OTHER_FORCE),
+        }),
     }
 }

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use pericles::material::{BondMaterial, ElasticModulus};
 use pericles::space::Grid;
-use pericles::time::State;
+use pericles::time::{State, VelocityVerlet};
 use pericles::{Body, PericlesError};
 
 use crate::verlet::Gpu;
@@ -56,7 +56,7 @@ impl Gpu {
         }
         state.start(&mut system);
         let bonds = system.operator().directed_bonds();
-        let mut device = self.device(&system, dt, LONGEST as usize)?;
+        let mut device = self.device(&system, &VelocityVerlet, (dt, LONGEST as usize))?;
         let mut batch = |steps: u64| {
             let start = Instant::now();
             device.advance(&mut system, &mut state, dt, steps)?;

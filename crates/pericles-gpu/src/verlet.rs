@@ -5,12 +5,10 @@ use pericles::time::{Device as Processor, DevicePlan, Integrator, State, Velocit
 use pericles::{Interrupt, PericlesError, StepKind, System};
 
 use crate::adapter::{Adapter, Context};
-use crate::arrays::sizes;
 use crate::batch::Device;
 use crate::body::Body;
-use crate::entries::Entries;
 use crate::error::GpuError;
-use crate::limits::require;
+use crate::limits::supported;
 use crate::precision::{Precision, Units};
 
 /// Largest number of steps of a batch: the state is read by the host after each batch.
@@ -51,43 +49,25 @@ impl Gpu {
     pub(crate) fn device(
         &self,
         system: &System,
-        dt: f64,
-        steps: usize,
-    ) -> Result<Device, GpuError> {
-        let body = self.supported(system, &VelocityVerlet, dt)?;
-        Device::new(self.context.clone(), system, body, steps)
-    }
-
-    fn body(&self, system: &System, dt: f64) -> Option<Body> {
-        let force = system.operator().capabilities().stencil?;
-        let units = Units::new(self.context.precision, system.cloud().spacing(), dt);
-        Some(Body::new(system, &force.data(), units))
-    }
-
-    fn supported(
-        &self,
-        system: &System,
         integrator: &dyn Integrator,
-        dt: f64,
-    ) -> Result<Body, GpuError> {
-        require(system, integrator)?;
-        let reason = "the force is not that of a regular lattice";
-        self.body(system, dt)
-            .ok_or(GpuError::NotSupported { reason })
+        (dt, steps): (f64, usize),
+    ) -> Result<Device, GpuError> {
+        let data = supported(system, integrator)?;
+        let units = Units::new(self.context.precision, system.cloud().spacing(), dt);
+        let body = Body::new(system, &data, units);
+        Device::new(self.context.clone(), system, body, steps)
     }
 }
 
 impl Processor for Gpu {
-    fn plan(
+    fn prepare(
         &self,
         system: &System,
         integrator: &dyn Integrator,
         dt: f64,
-    ) -> Result<DevicePlan, PericlesError> {
-        let body = self.supported(system, integrator, dt)?;
-        let entries = Entries::new(system, &body);
-        let bytes = sizes(&body, &entries, STEPS, &self.context).iter().sum();
-        Ok(DevicePlan {
+    ) -> Result<(Box<dyn Integrator>, DevicePlan), PericlesError> {
+        let device = self.device(system, integrator, (dt, STEPS))?;
+        let plan = DevicePlan {
             name: self.adapter.name.clone(),
             interface: self.adapter.interface.clone(),
             precision: self.context.precision.name(),
@@ -96,19 +76,9 @@ impl Processor for Gpu {
                 (Precision::Double, false) => "the device computes in double precision",
                 (Precision::Mixed, false) => "the device does not compute in double precision",
             },
-            memory: bytes,
-        })
-    }
-
-    fn integrator(
-        &self,
-        system: &System,
-        integrator: &dyn Integrator,
-        dt: f64,
-    ) -> Result<Box<dyn Integrator>, PericlesError> {
-        let body = self.supported(system, integrator, dt)?;
-        let device = Device::new(self.context.clone(), system, body, STEPS)?;
-        Ok(Box::new(DeviceVerlet { device }))
+            memory: device.bytes(),
+        };
+        Ok((Box::new(DeviceVerlet { device }), plan))
     }
 }
 

@@ -45,9 +45,7 @@ impl Case {
         }
         let integrator: Box<dyn Integrator> = match device {
             None => Box::new(VelocityVerlet),
-            Some(device) => device
-                .integrator(&system, &VelocityVerlet, self.dt)
-                .unwrap(),
+            Some(device) => device.prepare(&system, &VelocityVerlet, self.dt).unwrap().0,
         };
         Simulation::new(system, integrator, state, self.dt, steps).unwrap()
     }
@@ -482,8 +480,9 @@ fn unsupported_runs_are_errors() {
     let reasons = unsupported(&list, &VelocityVerlet);
     assert_eq!(reasons.len(), 1, "{reasons:?}");
     let error = gpu(Precision::Double)
-        .plan(&list, &VelocityVerlet, 1e-8)
-        .unwrap_err();
+        .prepare(&list, &VelocityVerlet, 1e-8)
+        .err()
+        .unwrap();
     assert!(
         matches!(error.extension(), Some(DeviceError::Unsuitable(_))),
         "{error}"

@@ -200,8 +200,8 @@ impl Means {
             dt,
             ..
         } = assembly;
-        let plan = device.plan(system, &**integrator, *dt)?;
-        *integrator = device.integrator(system, &**integrator, *dt)?;
+        let (scheme, plan) = device.prepare(system, &**integrator, *dt)?;
+        *integrator = scheme;
         assembly.device = Some(plan);
         Ok(())
     }

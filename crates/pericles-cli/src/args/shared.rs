@@ -94,28 +94,26 @@ pub(crate) struct DeviceChoice {
 }
 
 impl DeviceChoice {
+    /// Returns the processor that the command line wants, if it wants one.
+    fn wanted(&self) -> Option<Processor> {
+        let precision = self.precision.unwrap_or_default();
+        self.device.map(|device| Processor {
+            precision,
+            ..device
+        })
+    }
+
     /// Returns the graphics processor that the command line wants, if it wants one.
     pub(crate) fn graphics(&self) -> Option<Processor> {
-        let wanted = self.device?;
-        let precision = self.precision.unwrap_or_default();
-        (wanted.device == DeviceKind::Gpu).then_some(Processor {
-            precision,
-            ..wanted
-        })
+        self.wanted()
+            .filter(|wanted| wanted.device == DeviceKind::Gpu)
     }
 
     /// Returns means with this choice.
     pub(crate) fn with(&self, means: Means) -> Means {
-        let precise = |device: Processor| match self.precision {
-            Some(precision) => Processor {
-                precision,
-                ..device
-            },
-            None => device,
-        };
         Means {
             devices: devices(),
-            processor: self.device.map(precise),
+            processor: self.wanted(),
             ..means
         }
     }

@@ -159,7 +159,7 @@ pub(crate) fn bench(args: &BenchArgs, wanted: Processor) -> Result<Exit, CliErro
                 Precision::Mixed => Some(ceilings.floats),
             };
             let Some(ceiling) = ceiling else { continue };
-            let gpu = opened(&adapter, wanted_in(wanted, precision)).map_err(failed)?;
+            let gpu = Gpu::open(&adapter, Some(precision)).map_err(failed)?;
             let speed = gpu.speed(edge).map_err(failed)?;
             let rate = speed.bonds_per_second();
             let fraction = rate * PRODUCTS / ceiling;
@@ -196,16 +196,6 @@ pub(crate) fn bench(args: &BenchArgs, wanted: Processor) -> Result<Exit, CliErro
         console::write_json(path, &results)?;
     }
     Ok(Exit::Done)
-}
-
-fn wanted_in(wanted: Processor, precision: Precision) -> Processor {
-    Processor {
-        precision: match precision {
-            Precision::Double => DevicePrecision::Double,
-            Precision::Mixed => DevicePrecision::Mixed,
-        },
-        ..wanted
-    }
 }
 
 /// Returns the edge of the block of a case.

@@ -8,23 +8,17 @@ use crate::system::System;
 
 /// A processor beside that of the host which computes whole steps, such as a graphics processor.
 pub trait Device: fmt::Debug + Send + Sync {
-    /// Returns what a run of a system with a scheme and steps of length `dt` (s) needs.
-    ///
-    /// # Errors
-    /// The device does not compute the run.
-    fn plan(&self, system: &System, integrator: &dyn Integrator, dt: f64) -> Result<DevicePlan>;
-
     /// Returns the scheme whose steps the device computes, for steps of length `dt` (s) and a system whose loads, constraints and
-    /// boundaries are complete.
+    /// boundaries are complete, and what the run needs.
     ///
     /// # Errors
     /// The device does not compute the run, has too little memory, or fails.
-    fn integrator(
+    fn prepare(
         &self,
         system: &System,
         integrator: &dyn Integrator,
         dt: f64,
-    ) -> Result<Box<dyn Integrator>>;
+    ) -> Result<(Box<dyn Integrator>, DevicePlan)>;
 }
 
 /// What a run on a device needs.
