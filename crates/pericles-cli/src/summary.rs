@@ -97,10 +97,15 @@ fn heat(audit: &Audit, model: &Facts) -> Result<(), IoError> {
         return Ok(());
     };
     let through: f64 = heat.inflows.iter().map(|one| one.heat).sum();
-    let generated = match heat.from_dissipation {
-        Some(heat) => format!(", {} from dissipation", energy(heat)),
-        None => String::new(),
-    };
+    let sources = [
+        (heat.from_dissipation, "dissipation"),
+        (heat.from_activation, "activation"),
+    ];
+    let generated = sources.into_iter().filter_map(|(heat, source)| {
+        let heat = energy(heat?);
+        Some(format!(", {heat} from {source}"))
+    });
+    let generated: String = generated.collect();
     let balance = match (heat.balance, heat.balance_relative) {
         (Some(error), Some(relative)) => format!(
             "; heat balance: error {} ({})",

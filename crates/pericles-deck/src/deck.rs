@@ -224,6 +224,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
     let constraints: Option<Vec<Constraint>> = declared(&root, "constraint", scope);
     let loads = declared(&root, "load", scope);
     let boundaries = declared(&root, "boundary", scope);
+    let activations = declared(&root, "activation", scope);
     let probes = declared(&root, "probe", scope);
     let exact = root.maybe("exact", |item| {
         exact::read(item.table()?, frame.dimension, ExactScope { gaussian })
@@ -259,6 +260,7 @@ fn model(root: Table<'_>, further: &[String]) -> Option<Model> {
         constraints: constraints?,
         loads: loads?,
         boundaries: boundaries?,
+        activations: activations?,
         probes: probes?,
         exact: exact?,
         contact: contact?,

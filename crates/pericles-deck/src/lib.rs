@@ -75,6 +75,7 @@
 //!
 #![doc = include_str!("language.md")]
 
+mod activation;
 mod anisotropy;
 mod assign;
 mod body;
@@ -137,6 +138,7 @@ mod vocabulary;
 mod wording;
 mod words;
 
+pub use activation::{Activation, ActivationStart};
 pub use anisotropy::Anisotropy;
 pub use assign::Assignment;
 pub use body::{

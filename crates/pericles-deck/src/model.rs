@@ -5,6 +5,7 @@ use std::path::Path;
 use pericles::material::StressState;
 use serde::{Deserialize, Serialize};
 
+use crate::activation::Activation;
 use crate::assign::Assignment;
 use crate::body::{SolidShape, SurfaceShape, piece_path};
 use crate::boundary::BoundaryCondition;
@@ -118,6 +119,9 @@ pub struct Model {
     /// `[[boundary]]`
     #[serde(default, rename = "boundary")]
     pub boundaries: Vec<BoundaryCondition>,
+    /// `[[activation]]`
+    #[serde(default, rename = "activation", skip_serializing_if = "Vec::is_empty")]
+    pub activations: Vec<Activation>,
     /// `[[probe]]`
     #[serde(default, rename = "probe")]
     pub probes: Vec<Probe>,
@@ -253,6 +257,7 @@ impl Model {
             constraints: Vec::new(),
             loads: Vec::new(),
             boundaries: Vec::new(),
+            activations: Vec::new(),
             probes: Vec::new(),
             exact: None,
             contact: None,
@@ -305,10 +310,12 @@ impl Model {
         let thermal = thermal.filter_map(|thermal| thermal.file.as_deref());
         let body = self.body.files().into_iter();
         let impactors = self.impactors.iter().filter_map(Impactor::file);
+        let activations = self.activations.iter().filter_map(Activation::file);
         body.chain(initial)
             .chain(cracks)
             .chain(thermal)
             .chain(impactors)
+            .chain(activations)
             .collect()
     }
 }

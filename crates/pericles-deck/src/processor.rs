@@ -13,10 +13,10 @@ pub struct Processor {
     #[serde(default)]
     #[deck(default)]
     pub device: DeviceKind,
-    /// gpu: number of the graphics processor in the list of `pericles devices`. Default: the first one.
+    /// gpu: number of the graphics processor in the list of `pericles devices`, from 0. Default: the first one.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    #[deck(forbid_if(device != Some(&DeviceKind::Gpu), OF_GPU))]
-    pub adapter: Option<u64>,
+    #[deck(range = at_least(0.0).whole(), forbid_if(device != Some(&DeviceKind::Gpu), OF_GPU))]
+    pub adapter: Option<u32>,
     /// gpu: `double` precision; `mixed`, forces in single precision with an error of about 1e-7 of the largest force; or
     /// `auto`, double precision if the graphics processor has it.
     #[serde(default)]

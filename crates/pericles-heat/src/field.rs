@@ -70,6 +70,16 @@ struct State {
     failure: Option<PericlesError>,
     /// Heat from dissipated energy, if any.
     dissipation: Option<Dissipation>,
+    /// Values that points take when they become active, if any.
+    new: Option<NewPoints>,
+}
+
+/// Values of points when they become active.
+struct NewPoints {
+    /// By own point; `None` for points that keep their value.
+    values: Vec<Option<f64>>,
+    /// Content that the points have brought so far.
+    content: f64,
 }
 
 /// A computed field, shared by the system and the forces that depend on it. Values belong to own points, contents, flows and
@@ -125,10 +135,25 @@ impl DiffusingField {
             revision: 0,
             failure: None,
             dissipation,
+            new: None,
         };
         Ok(Self {
             shared: SharedField(Arc::new(Mutex::new(state))),
         })
+    }
+
+    /// Sets the values that own points take when they become active
+    /// ([`System::add_activation`](pericles::System::add_activation)); `None` for points that keep their value.
+    ///
+    /// # Errors
+    /// A number of values other than that of the points.
+    pub fn set_new_values(&mut self, values: Vec<Option<f64>>) -> Result<()> {
+        let mut state = self.shared.state();
+        let what = "the temperatures of points that become active";
+        check_length(what, values.len(), state.problem.len())?;
+        let content = 0.0;
+        state.new = Some(NewPoints { values, content });
+        Ok(())
     }
 
     /// Returns the field as forces and observers share it.
@@ -324,6 +349,11 @@ impl SharedField {
         dissipation.map(|dissipation| dissipation.heat)
     }
 
+    /// Returns the content that points have brought when they became active, J for heat; `None` if they keep their values.
+    pub fn content_of_new_points(&self) -> Option<f64> {
+        self.state().new.as_ref().map(|new| new.content)
+    }
+
     /// Returns the smallest and the largest value at a time.
     pub fn range(&self, t: f64) -> [f64; 2] {
         let mut state = self.state();
@@ -431,6 +461,45 @@ impl SecondaryField for DiffusingField {
         Ok(())
     }
 
+    fn set_new(&mut self, points: &[u32]) {
+        let mut state = self.shared.state();
+        let State {
+            problem,
+            accepted,
+            new: Some(new),
+            ..
+        } = &mut *state
+        else {
+            return;
+        };
+        let free = points.iter().map(|&i| i as usize);
+        let changed: Vec<(usize, f64)> = free
+            .filter(|&i| !problem.is_prescribed(i))
+            .filter_map(|i| Some((i, new.values[i]?)))
+            .collect();
+        let capacity = problem.capacity();
+        let old = &accepted.to.values;
+        let gain = |k: usize| {
+            let (i, value) = changed[k];
+            capacity[i] * (value - old[i])
+        };
+        new.content += problem.domain().sum(changed.len(), gain);
+        for one in [&mut accepted.from, &mut accepted.to] {
+            for &(i, value) in &changed {
+                one.values[i] = value;
+            }
+        }
+        state.ahead = None;
+        state.revision += 1;
+    }
+
+    fn read_bonds(&mut self, forces: &dyn Force) {
+        let mut state = self.shared.state();
+        if state.problem.diffusion.read_bonds(forces) {
+            state.ahead = None;
+        }
+    }
+
     fn values_into(&self, t: f64, out: &mut [f64]) {
         out.copy_from_slice(&self.shared.state().values_at(t));
     }
@@ -446,6 +515,7 @@ impl SecondaryField for DiffusingField {
 const TIMES: &str = "temperature/t";
 const CONTENT: &str = "temperature/initial content";
 const EFFORT: &str = "temperature/effort";
+const NEW: &str = "temperature/content of new points";
 const INTACT: &str = "temperature/intact bonds";
 const VALUES: [&str; 2] = ["temperature/from", "temperature/to"];
 const FLOWS: [&str; 2] = ["temperature/flows from", "temperature/flows to"];
@@ -464,6 +534,9 @@ impl Checkpointed for DiffusingField {
             let values = Values::F64(one.values.clone());
             archive.put_as(VALUES[k], values, Layout::Points);
             archive.put(FLOWS[k], Values::F64(one.flows.clone()));
+        }
+        if let Some(new) = &state.new {
+            archive.put(NEW, Values::F64(vec![new.content]));
         }
         if let Some(dissipation) = state.dissipation {
             dissipation.save(archive);
@@ -489,6 +562,9 @@ impl Checkpointed for DiffusingField {
         state.accepted.to.effort = Effort { last, most, total };
         if let Some(dissipation) = &mut state.dissipation {
             dissipation.restore(archive)?;
+        }
+        if let Some(new) = &mut state.new {
+            archive.f64_into(NEW, std::slice::from_mut(&mut new.content))?;
         }
         state.problem.diffusion.restore_intact(INTACT, archive)?;
         state.ahead = None;

@@ -7,14 +7,14 @@ use crate::TextError;
 use crate::points::words;
 use crate::whole::read_whole;
 
-/// Reads a table with `rows` rows and one column per name; returns the numbers row by row.
+/// Reads a table with one column per name and `rows` rows, or any number of rows; returns the numbers row by row.
 ///
 /// # Errors
 /// Returns an error if the file cannot be read or exceeds `memory` bytes, for the first line that does not
 /// contain one finite number per column, and for too many or too few lines.
 pub fn read_rows(
     path: impl AsRef<Path>,
-    rows: usize,
+    rows: Option<usize>,
     columns: &[&str],
     memory: u64,
 ) -> Result<Vec<f64>, TextError> {
@@ -33,7 +33,7 @@ pub fn read_rows(
 pub fn parse_rows(
     name: impl AsRef<Path>,
     content: &[u8],
-    rows: usize,
+    rows: Option<usize>,
     columns: &[&str],
 ) -> Result<Vec<f64>, TextError> {
     let content = content.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(content);
@@ -46,7 +46,9 @@ pub fn parse_rows(
         if words.is_empty() {
             continue;
         }
-        if numbers.len() == rows * columns.len() {
+        if let Some(rows) = rows
+            && numbers.len() == rows * columns.len()
+        {
             return Err(rejected(format!(
                 "too many lines of numbers; expected {rows}"
             )));
@@ -70,7 +72,9 @@ pub fn parse_rows(
         }
     }
     let found = numbers.len() / columns.len().max(1);
-    if found < rows {
+    if let Some(rows) = rows
+        && found < rows
+    {
         let reason = format!("lines of numbers: {found}; expected: {rows}");
         return Err(TextError::whole(&name, reason));
     }
@@ -87,7 +91,7 @@ mod tests {
     #[test]
     fn rows_are_read_in_order() {
         let text = "\u{feff}# u_x v_x\n1e-3, -2\r\n\n 0.5\t4 ! the end\n";
-        let numbers = parse_rows("u.txt", text.as_bytes(), 2, &COLUMNS).unwrap();
+        let numbers = parse_rows("u.txt", text.as_bytes(), Some(2), &COLUMNS).unwrap();
         assert_eq!(numbers, [1e-3, -2.0, 0.5, 4.0]);
     }
 
@@ -112,7 +116,7 @@ mod tests {
             (b"\xff\xfe", "u.txt:1: the line is not UTF-8 text"),
         ];
         for (text, says) in cases {
-            let error = parse_rows("u.txt", text, 2, &COLUMNS)
+            let error = parse_rows("u.txt", text, Some(2), &COLUMNS)
                 .unwrap_err()
                 .to_string();
             assert!(error.starts_with(says), "{error}");
@@ -124,8 +128,8 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         let path = place.path().join("u.txt");
         std::fs::write(&path, "1 2\n3 4\n").unwrap();
-        assert!(read_rows(&path, 2, &COLUMNS, 100).is_ok());
-        let error = read_rows(&path, 2, &COLUMNS, 50).unwrap_err();
+        assert!(read_rows(&path, Some(2), &COLUMNS, 100).is_ok());
+        let error = read_rows(&path, Some(2), &COLUMNS, 50).unwrap_err();
         assert!(
             matches!(error, TextError::Io(IoError::TooLarge { .. })),
             "{error}"

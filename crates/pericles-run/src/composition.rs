@@ -257,11 +257,13 @@ pub enum Condition {
     DampedContact,
     /// Free impactors.
     FreeImpactors,
+    /// Points that become active during the run.
+    Activation,
 }
 
 impl Condition {
     /// All conditions.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Supports,
         Self::ReleasedPoints,
         Self::Breaking,
@@ -271,6 +273,7 @@ impl Condition {
         Self::Contact,
         Self::DampedContact,
         Self::FreeImpactors,
+        Self::Activation,
     ];
 
     /// Returns the name in tables.
@@ -285,6 +288,7 @@ impl Condition {
             Self::Contact => "contact",
             Self::DampedContact => "contact with damping or friction",
             Self::FreeImpactors => "free impactors",
+            Self::Activation => "activation of points",
         }
     }
 
@@ -300,6 +304,7 @@ impl Condition {
             Self::DampedContact => {
                 matches!(need, Need::NoInteractions | Need::ConservativeInteractions)
             }
+            Self::Activation => need == Need::NoActivation,
             Self::FreeImpactors => matches!(need, Need::NoInteractions | Need::NoFreeBodies),
         }
     }

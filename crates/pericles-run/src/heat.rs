@@ -59,7 +59,9 @@ pub struct HeatBalance {
     pub inflows: Vec<Inflow>,
     /// Heat from energy dissipated by the body, J; `None` if dissipated energy does not become heat.
     pub from_dissipation: Option<f64>,
-    /// Content minus initial content minus all inflows and heat from dissipation, J; `None` for steady states, whose change of content is not
+    /// Heat that points brought when they became active, J; `None` if they keep their temperatures.
+    pub from_activation: Option<f64>,
+    /// Content minus initial content minus all inflows and heat from dissipation and activation, J; `None` for steady states, whose change of content is not
     /// followed.
     pub balance: Option<f64>,
     /// The balance relative to the heat content.
@@ -83,7 +85,8 @@ impl HeatBalance {
         let inflows = inflows(&field, t);
         let total: f64 = inflows.iter().map(|inflow| inflow.heat).sum();
         let from_dissipation = field.heat_from_dissipation();
-        let generated = from_dissipation.unwrap_or_default();
+        let from_activation = field.content_of_new_points();
+        let generated = from_dissipation.unwrap_or_default() + from_activation.unwrap_or_default();
         let balance = content - initial_content - total - generated;
         let is_steady = field.options().scheme == pericles_heat::Scheme::Steady;
         let scale = inflows.iter().map(|inflow| inflow.heat.abs()).sum::<f64>();
@@ -96,6 +99,7 @@ impl HeatBalance {
             initial_content,
             inflows,
             from_dissipation,
+            from_activation,
             balance: (!is_steady).then_some(balance),
             balance_relative: (!is_steady).then_some(balance / scale),
             lowest,
@@ -159,6 +163,9 @@ impl Signals for HeatColumns {
         if self.field.heat_from_dissipation().is_some() {
             columns.push(heat("heat_from_dissipation".into()));
         }
+        if self.field.content_of_new_points().is_some() {
+            columns.push(heat("heat_from_activation".into()));
+        }
         columns.extend(
             ["lowest_temperature", "highest_temperature"].map(|name| Column::real(name, "K")),
         );
@@ -173,6 +180,7 @@ impl Signals for HeatColumns {
         let mut cells = vec![Cell::Real(self.field.content(t))];
         cells.extend(heats.map(Cell::Real));
         cells.extend(self.field.heat_from_dissipation().map(Cell::Real));
+        cells.extend(self.field.content_of_new_points().map(Cell::Real));
         cells.extend(self.field.range(t).map(Cell::Real));
         Ok(cells)
     }

@@ -287,3 +287,19 @@ fn a_run_with_conduction_is_resumed_on_another_number_of_processes() {
         check_resumed(&torn(model, "step = 0.27", "end = 4, dt = 0.05"), 38, SIZES);
     }
 }
+
+#[test]
+fn bodies_that_grow_have_the_files_of_one_process() {
+    let activation = "[[activation]]\nactive_from = { expression = \"0.1*(x - 6) + 0.05*y\" }\ntemperature = 400\n";
+    for model in [
+        "model = \"linear\"",
+        "model = \"bond-stretch\", critical_stretch = 0.06, softening = { law = \"linear\", onset_stretch = 0.01 }",
+    ] {
+        let deck = torn(model, "", "end = 4, dt = 0.05").replace(
+            "\"Damage\"] }",
+            "\"Active\"] }, picture = [{ field = \"Temperature\", count = 2 }]",
+        );
+        let history = check(&format!("{deck}{activation}"), &[2, 3]);
+        assert!(last(&history, "heat_from_activation") > 0.0, "{history}");
+    }
+}

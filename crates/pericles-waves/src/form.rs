@@ -44,7 +44,7 @@ const TENSORS: Limit = Limit::new(
 );
 
 /// Limits of all transforms.
-const OF_TRANSFORMS: [Limit; 18] = [
+const OF_TRANSFORMS: [Limit; 19] = [
     Limit::STATE_BASED,
     Limit::CORRESPONDENCE,
     Limit::SEVERAL_SPACINGS,
@@ -63,6 +63,7 @@ const OF_TRANSFORMS: [Limit; 18] = [
     TENSORS,
     Limit::THERMAL_EXPANSION,
     Limit::SOFTENING,
+    Limit::ACTIVATION,
 ];
 
 const FULL_BOX: &str =

@@ -27,6 +27,8 @@ pub enum Need {
     NoFreeBodies,
     /// A body that is not divided among several processes.
     WholeBody,
+    /// No points that become active during the run.
+    NoActivation,
 }
 
 /// A requirement of a scheme, with its reason.
@@ -49,6 +51,12 @@ impl Requirement {
     pub const CONSERVATIVE_CONTACT: Self = Self {
         need: Need::ConservativeInteractions,
         reason: "dampers and friction of contact act on the mean velocity of a step, which this scheme does not have; use velocity-verlet, or contact without damping and friction",
+    };
+
+    /// The requirement of schemes that know the bonds of zones from the start.
+    pub const NO_ACTIVATION: Self = Self {
+        need: Need::NoActivation,
+        reason: "its zones are those of the bonds at the start of the run, but points become active later; use velocity-verlet, or remove [[activation]]",
     };
 
     /// The requirement of schemes that move the points only.
@@ -75,6 +83,7 @@ impl Need {
             Self::ConservativeInteractions => {
                 system.interactions().all(|one| one.is_conservative())
             }
+            Self::NoActivation => !system.has_activation(),
             Self::WholeBody => !system.domain().is_divided(),
             Self::NoFreeBodies => !system.interactions().any(|one| one.has_free_bodies()),
         }

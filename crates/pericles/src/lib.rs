@@ -211,7 +211,7 @@ pub use simulation::{
 pub use step_end::{BreakingBond, Path, StepEnd};
 pub use step_kind::{StepKind, schemes_of};
 pub use stop::{Found, StopCondition, StopReason, StopTest, StopWhen};
-pub use system::{System, SystemParts};
+pub use system::{ActivationRange, System, SystemParts};
 pub use thermal::{
     Expandable, HeatedFactor, OfTemperature, Pointwise, Temperature, ThermalExpansion, YieldFactor,
 };

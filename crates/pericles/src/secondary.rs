@@ -51,6 +51,12 @@ pub trait SecondaryField: Any + Checkpointed + Send + Sync {
     /// Equations that could not be solved.
     fn end_step(&mut self, body: BodyStep<'_>) -> Result<()>;
 
+    /// Sets the values of points that have become active at the end of the last step.
+    fn set_new(&mut self, points: &[u32]);
+
+    /// Reads which bonds exist, because bonds have come into being.
+    fn read_bonds(&mut self, forces: &dyn Force);
+
     /// Sets the values of all points at a time.
     fn values_into(&self, t: f64, out: &mut [f64]);
 

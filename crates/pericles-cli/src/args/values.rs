@@ -49,7 +49,7 @@ pub(super) fn device(text: &str) -> Result<Processor, String> {
     match text.split_once(':') {
         None if text == "cpu" => Ok(of(DeviceKind::Cpu, None)),
         None if text == "gpu" => Ok(of(DeviceKind::Gpu, None)),
-        Some(("gpu", number)) if number.parse::<u64>().is_ok() => {
+        Some(("gpu", number)) if number.parse::<u32>().is_ok() => {
             Ok(of(DeviceKind::Gpu, number.parse().ok()))
         }
         _ => Err("expected cpu, gpu or gpu:N with the number of a graphics processor".into()),

@@ -37,9 +37,7 @@ impl Devices for GraphicsProcessors {
 }
 
 fn found(wanted: Processor) -> Result<Adapter, GpuError> {
-    // Numbers beyond all adapters are rejected with the number of adapters.
-    let number = |number| usize::try_from(number).unwrap_or(usize::MAX);
-    adapter(wanted.adapter.map(number))
+    adapter(wanted.adapter.map(|number| number as usize))
 }
 
 fn opened(adapter: &Adapter, wanted: Processor) -> Result<Gpu, GpuError> {

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use pericles::observe::{Field, FieldKind};
 use pericles::space::PointCloud;
 use pericles_deck::Model;
-use pericles_io::observers::{DrawnState, ImpactorSurfaces, PictureOf};
+use pericles_io::observers::{DrawnState, ImpactorSurfaces, PictureOf, leave_out_inactive};
 use pericles_io::{Extent, FieldData, write_animation};
 use pericles_run::{
     FieldFile, Resources, Results, RunError, body_shape, discretise, machine, picture_of, readers,
@@ -274,6 +274,10 @@ impl Body {
                 let entries = self.rows.iter().map(|row| row * column.components + c);
                 values.extend(entries.map(|entry| column.values[entry]));
             }
+        }
+        if let Some(active) = data.field(Field::Active.name()) {
+            let active: Vec<f64> = self.rows.iter().map(|&row| active.values[row]).collect();
+            leave_out_inactive(&mut values, &active);
         }
         Ok(values)
     }

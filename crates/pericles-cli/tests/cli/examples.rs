@@ -116,6 +116,13 @@ fn cooling_bar() {
     assert!(heat["balance_relative"].as_f64().unwrap().abs() < 1e-12);
 }
 
+#[test]
+fn printed_wall() {
+    let (_place, out) = check("heat", "printed-wall");
+    let heat = &report(&out)["audit"]["heat"];
+    assert!(heat["balance_relative"].as_f64().unwrap().abs() < 1e-12);
+}
+
 /// Returns time, x, y and advance of the tip of the first crack, for the rows in which it has grown.
 fn tip(out: &Path) -> Vec<[f64; 4]> {
     let cracks = table(out, "cracks.csv");

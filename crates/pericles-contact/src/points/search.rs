@@ -107,7 +107,7 @@ impl Candidates {
             broken: Vec::new(),
         };
         if let Some(bonds) = bonds(own, forces) {
-            bonds.for_each_broken_count(&mut |_, count| candidates.broken.push(count));
+            bonds.for_each_change_count(&mut |_, count| candidates.broken.push(count));
             candidates.close_bonded(own, forces, std::slice::from_ref(&(0..n)));
         }
         candidates.find_exposed();
@@ -129,7 +129,7 @@ impl Candidates {
     pub(super) fn is_behind(&self, touching: &Touching, forces: &dyn Force) -> bool {
         let (mut k, mut same) = (0, true);
         if let Some(bonds) = bonds(touching, forces) {
-            bonds.for_each_broken_count(&mut |_, count| {
+            bonds.for_each_change_count(&mut |_, count| {
                 same &= self.broken.get(k) == Some(&count);
                 k += 1;
             });
@@ -143,7 +143,7 @@ impl Candidates {
             return;
         };
         let (mut k, mut changed) = (0, Vec::new());
-        bonds.for_each_broken_count(&mut |range, count| {
+        bonds.for_each_change_count(&mut |range, count| {
             if self.broken[k] != count {
                 self.broken[k] = count;
                 changed.push(range);

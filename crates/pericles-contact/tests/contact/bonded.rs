@@ -113,7 +113,7 @@ impl BondSet for Bonded {
         self.rows[i].iter().for_each(|&j| visit(j));
     }
 
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+    fn for_each_change_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
         visit(0..self.points, 0);
     }
 }

@@ -136,6 +136,7 @@ impl Check {
         if let Some(exact) = &model.exact {
             exact.check("exact".into(), ExactScope { gaussian: None }, self);
         }
+        (model.activations).check("activation".into(), scope, self);
         model.probes.check("probe".into(), scope, self);
         if let Some(contact) = &model.contact {
             contact.check("contact".into(), scope, self);

@@ -182,7 +182,8 @@ pub struct FieldOutput {
     /// correspondence material, Plastic_Strain and Yield_Flag a `yield_stress`, Temperature the table `[thermal]`,
     /// Heat_Flux heat conduction. Equivalent_Stress and Von_Mises_Stress are the von Mises stress, of the in-plane
     /// components in 2D; Principal_Stress contains the eigenvalues of the stress in descending order. Integers: Point_Id
-    /// (number of the point), Fragment_Id (number of the fragment), Material_Id (1: the body's material, 2: the first of
+    /// (number of the point), Fragment_Id (number of the fragment), Active (1 for
+    /// points that belong to the body, 0 for those that become active later), Material_Id (1: the body's material, 2: the first of
     /// `[materials]`, …), `Set_<name>` (1 in the set, 0 elsewhere). Radius is half the cell size. VTU files contain Stress and
     /// Strain as symmetric tensors and their components as scalars.
     #[deck(flatten, key = "names", with = names)]

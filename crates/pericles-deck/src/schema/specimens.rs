@@ -104,6 +104,13 @@ until = 1
 set = "top"
 body_force = [{ expression = "x" }, 1]
 function = { kind = "expression", expression = "t" }
+[[activation]]
+set = "top"
+active_from = { expression = "x" }
+temperature = 300
+[[activation]]
+path = "path.txt"
+radius = 1
 [[probe]]
 name = "a"
 at = [0, 0]
@@ -162,7 +169,7 @@ reference = { expression = "x + t" }
 wall = 1
 [run]
 device = "gpu"
-adapter = 1
+adapter = 0
 precision = "mixed"
 "#;
 

@@ -294,7 +294,7 @@ impl Diffusion {
         let mut changed = Vec::new();
         let (mut k, first) = (0, self.read.is_empty());
         let read = &mut self.read;
-        bonds.for_each_broken_count(&mut |range, count| {
+        bonds.for_each_change_count(&mut |range, count| {
             if k == read.len() {
                 read.push(0);
             }

@@ -95,7 +95,7 @@ pub use fragments::FragmentCourse;
 pub use history::{History, HistoryRows};
 pub use impactors::{ContactColumns, ImpactorSignals, ImpactorSurfaces};
 pub use overlay::CarriedLine;
-pub use picture_of::{DrawnState, PictureOf};
+pub use picture_of::{DrawnState, PictureOf, leave_out_inactive};
 pub use pictures::Pictures;
 pub use profile::{Profile, Reference, profile_chart};
 pub use result_file::{RecordedFields, ResultFile, ResultFormat};

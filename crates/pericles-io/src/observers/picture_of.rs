@@ -155,8 +155,8 @@ impl PictureOf {
     ) -> std::result::Result<(), IoError> {
         let (state, cloud) = (snapshot.state(), snapshot.whole_cloud());
         let (field, displacement) = (
-            snapshot.whole(self.field),
-            snapshot.whole(Field::Displacement),
+            whole_shown(snapshot, self.field),
+            whole_shown(snapshot, Field::Displacement),
         );
         let damage = whole_damage(snapshot);
         let (Some(field), Some(displacement)) = (field, displacement) else {
@@ -253,6 +253,31 @@ impl PictureOf {
 pub(super) fn whole_damage<'a>(snapshot: &'a Snapshot<'_>) -> Option<Cow<'a, [f64]>> {
     let can_break = snapshot.system().operator().can_break();
     can_break.then(|| snapshot.whole(Field::Damage)).flatten()
+}
+
+/// Returns a field of the whole body, without points that are not active, on the process that writes the results. All
+/// processes must call it together.
+pub(super) fn whole_shown<'a>(snapshot: &'a Snapshot<'_>, field: Field) -> Option<Cow<'a, [f64]>> {
+    let values = snapshot.whole(field);
+    if !snapshot.system().has_activation() {
+        return values;
+    }
+    let active = snapshot.whole(Field::Active);
+    let mut values = values?.into_owned();
+    leave_out_inactive(&mut values, &active?);
+    Some(values.into())
+}
+
+/// Sets the values of points that are not active to NaN, which pictures do not show; `active` is
+/// [`Field::Active`] of the points, `values` one field, component-major.
+pub fn leave_out_inactive(values: &mut [f64], active: &[f64]) {
+    for component in values.chunks_mut(active.len().max(1)) {
+        for (value, active) in component.iter_mut().zip(active) {
+            if *active == 0.0 {
+                *value = f64::NAN;
+            }
+        }
+    }
 }
 
 /// Returns the corners of the bounding box of the points, enlarged by a tenth of its longest side.

@@ -10,7 +10,7 @@ use pericles::observe::{Field, ObserveError, Observer, Snapshot};
 use pericles::space::PointCloud;
 use pericles::{Archive, Checkpointed, PericlesError, Result, Values};
 
-use super::picture_of::{DrawnState, PictureOf, whole_damage};
+use super::picture_of::{DrawnState, PictureOf, whole_damage, whole_shown};
 use super::rigid::{RigidMesh, rigid_meshes};
 use crate::checkpoint::Container;
 use crate::error::IoError;
@@ -46,8 +46,8 @@ impl DrawnFile {
     /// Returns the state of a snapshot; `None` if another process writes it.
     fn of(what: &PictureOf, snapshot: &Snapshot<'_>) -> Option<Self> {
         let (field, displacement) = (
-            snapshot.whole(what.field),
-            snapshot.whole(Field::Displacement),
+            whole_shown(snapshot, what.field),
+            whole_shown(snapshot, Field::Displacement),
         );
         let damage = whole_damage(snapshot);
         let field = field?;

@@ -336,7 +336,7 @@ impl<L: SurfaceLaw> BondSet for SurfaceForce<L> {
         intact.for_each(|(_, j)| visit(j));
     }
 
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+    fn for_each_change_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
         visit(0..self.points(), BondSet::broken_bonds(self));
     }
 }

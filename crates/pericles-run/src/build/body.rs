@@ -2,7 +2,7 @@
 
 use pericles::material::BondMaterial;
 use pericles::observe::{Field, FieldNeed, TrackedCrack};
-use pericles::operator::{BondBody, CompositeBody, Feature};
+use pericles::operator::{BondBody, CompositeBody, Feature, Features};
 use pericles::space::PointSet;
 use pericles::{Need, PericlesError, PointScalar, System};
 use pericles_deck::{
@@ -241,6 +241,19 @@ impl Assembler<'_> {
         Ok(points)
     }
 
+    /// Returns a force kernel that supports thermal expansion and activation, for models that have them.
+    pub(super) fn form_of_model(&self, form: ForceForm) -> Result<ForceForm, BuildError> {
+        let grows = !self.model.activations.is_empty();
+        let features = Features::default()
+            .with(Feature::ThermalExpansion, self.expands())
+            .with(Feature::Activation, grows);
+        form.check(features).map_err(at_material)?;
+        Ok(match form {
+            ForceForm::Fastest if grows => ForceForm::List,
+            form => form,
+        })
+    }
+
     /// Returns the force kernel of a model, or one compatible with its scheme and output.
     fn form(
         &self,
@@ -254,7 +267,7 @@ impl Assembler<'_> {
             || self.touches_without_bonds()
             || composite.body.cloud.domain().is_divided()
             || has_need(scheme, Need::FiniteReach);
-        match self.heated_form(solid.material.form)? {
+        match self.form_of_model(solid.material.form)? {
             ForceForm::Fastest if needs_bonds && !is_graded => Ok(composite.fastest_form().into()),
             ForceForm::FloatGrid if has_need(scheme, Need::DoublePrecision) => {
                 Err(at_material(PericlesError::FormNotUsable {

@@ -111,7 +111,7 @@ impl Assembler<'_> {
         const COLUMNS: [[&str; 3]; 2] = [["u_x", "u_y", "u_z"], ["v_x", "v_y", "v_z"]];
         let columns = COLUMNS.map(|names| names[..dimension].to_vec());
         let file = resources.beside(file);
-        (resources.read_table)(&file, points, &columns.concat(), resources.memory).map_err(
+        (resources.read_table)(&file, Some(points), &columns.concat(), resources.memory).map_err(
             |error| {
                 let advice = format!(
                     "expected: one line for each of the {points} points, in the order of the field files (listed points: of their file), with displacement components in m, then velocity components in m/s; a relative path starts at the deck's folder"

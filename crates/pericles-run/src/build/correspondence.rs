@@ -71,7 +71,7 @@ impl Assembler<'_> {
         };
         // Spectral force kernels are rejected above.
         let form = self
-            .heated_form(material.form)?
+            .form_of_model(material.form)?
             .of_bonds()
             .unwrap_or_default();
         let bonds = body.operator(form).map_err(at_material)?;

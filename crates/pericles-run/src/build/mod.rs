@@ -1,6 +1,7 @@
 //! Assembly of models: [`discretise`] creates points and sets, [`assemble`] the equation of motion, the scheme and
 //! the time step.
 
+mod activation;
 mod area;
 mod assemble;
 mod assembler;

@@ -53,10 +53,10 @@ pub type Polygons = Vec<Vec<[f64; 2]>>;
 /// Reads the polygons of an outline, in the length unit of the file, with a memory limit in bytes.
 pub type OutlineReader<'a> = dyn Fn(&Path, u64) -> Result<Polygons, FileError> + Sync + 'a;
 
-/// Reads a table of numbers from a file, given the number of rows and the column names, row by row, with a memory
-/// limit in bytes.
+/// Reads a table of numbers from a file, given the column names and the number of rows, if it is known, row by row, with a
+/// memory limit in bytes.
 pub type TableReader<'a> =
-    dyn Fn(&Path, usize, &[&str], u64) -> Result<Vec<f64>, FileError> + Sync + 'a;
+    dyn Fn(&Path, Option<usize>, &[&str], u64) -> Result<Vec<f64>, FileError> + Sync + 'a;
 
 /// Resources for building a model besides its deck. Decks do not read other files: the caller provides the readers.
 #[derive(Clone, Copy)]
@@ -71,7 +71,7 @@ pub struct Resources<'a> {
     pub read_mesh: &'a MeshReader<'a>,
     /// The reader of bodies with `shape = "outline"`.
     pub read_outline: &'a OutlineReader<'a>,
-    /// The reader of files of `[[initial]]`.
+    /// The reader of files of `[[initial]]`, `[thermal]` and `[[activation]]`.
     pub read_table: &'a TableReader<'a>,
     /// The base folder of relative paths of the model; empty for the current folder.
     pub folder: &'a Path,

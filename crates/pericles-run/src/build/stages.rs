@@ -81,11 +81,12 @@ impl<'a> Placed<'a> {
             resources,
         } = self;
         let mut parts = self.parts()?;
-        let field = assembler.conduct(&parts, place, resources)?;
+        let mut field = assembler.conduct(&parts, place, resources)?;
         assembler.heat(&mut parts, place, resources, field.as_ref())?;
         let temperature = field.as_ref().map(DiffusingField::shared);
         let computed = temperature.clone().map(|field| Arc::new(field) as _);
         assembler.vary(&mut parts, place, resources, computed)?;
+        let activation = assembler.activation(place, resources, field.as_mut())?;
         let BodyParts {
             constants,
             others,
@@ -107,6 +108,7 @@ impl<'a> Placed<'a> {
             let added = system.add_field(Box::new(field));
             added.map_err(|error| at("thermal", error))?;
         }
+        assembler.activate((&mut system, activation), resources)?;
         assembler.reject_fields(&system)?;
         let precut_bonds = bonds.cuts.iter().map(|cut| cut.bonds).sum();
         let state = assembler.first_state((&mut system, precut_bonds), cloud, resources);

@@ -94,7 +94,7 @@ impl Assembler<'_> {
         };
         // Spectral force kernels are rejected above.
         let form = self
-            .heated_form(material.form)?
+            .form_of_model(material.form)?
             .of_bonds()
             .unwrap_or_default();
         let criteria = all.iter().filter_map(|own| own.criterion.as_ref());

@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use pericles::boundary::TimeFunction;
 use pericles::material::{StressState, SurfaceCorrection};
-use pericles::operator::{Feature, Features};
 use pericles::parallel::for_each_point;
 use pericles::space::PointCloud;
 use pericles::units::quantity;
@@ -13,14 +12,14 @@ use pericles_deck::{
     Body, BuildError, Component, Fault, KeyPath, MaterialThermal, Property, Scheme, Solid, Thermal,
 };
 use pericles_heat::DiffusingField;
-use pericles_waves::{AssembledForce, ForceForm};
+use pericles_waves::AssembledForce;
 
 use super::assembler::Assembler;
 use super::body::BodyParts;
 use super::constants::MaterialConstants;
 use super::discretisation::Discretisation;
 use super::properties::{FINITE, OfMaterial};
-use super::rejection::{at, at_material, at_path};
+use super::rejection::{at, at_path};
 use super::resources::Resources;
 
 /// A temperature given by the deck: T₀ + g(t) (T − T₀).
@@ -72,13 +71,6 @@ impl Assembler<'_> {
         let thermal = self.model.thermal.as_ref();
         let coefficient = thermal.is_some_and(|thermal| thermal.expansion.is_some());
         coefficient && self.model.time.scheme != Scheme::Thermal
-    }
-
-    /// Rejects force kernels that do not support thermal expansion, for models that have it.
-    pub(super) fn heated_form(&self, form: ForceForm) -> Result<ForceForm, BuildError> {
-        let expands = Features::default().with(Feature::ThermalExpansion, self.expands());
-        form.check(expands).map_err(at_material)?;
-        Ok(form)
     }
 
     /// Adds thermal expansion to the materials of a body, if the model has it.
@@ -233,7 +225,7 @@ impl Assembler<'_> {
         let formula = match (&thermal.temperature, &thermal.file) {
             (_, Some(file)) => {
                 let file = resources.beside(file);
-                let rows = (resources.read_table)(&file, points, &["temperature"], memory);
+                let rows = (resources.read_table)(&file, Some(points), &["temperature"], memory);
                 let rows = rows.map_err(|error| {
                     let advice = format!(
                         "expected: one line for each of the {points} points, in the order of the field files (listed points: of their file), with the temperature in K; a relative path starts at the deck's folder"

@@ -1,5 +1,6 @@
 //! Facts of properties that are functions, loads, heat conduction, contact and boundaries.
 
+use pericles::ActivationRange;
 use pericles_deck::Model;
 use pericles_waves::absorbing::{EndReport, KernelMethod, Side};
 use serde_json::json;
@@ -76,6 +77,36 @@ impl Facts {
             .fact("heat", "", heat)
             .checked("thermal_step", "s", step)
             .checked("thermal_sub_steps", "", parts);
+    }
+
+    pub(super) fn activation(&mut self, assembly: &Assembly) {
+        let Some(range) = assembly.system.activation_range() else {
+            return;
+        };
+        let ActivationRange {
+            points,
+            first,
+            last,
+            never,
+        } = range;
+        let mut text = format!("{} points", count(points));
+        if points > never {
+            text += &format!(
+                " between {} and {}",
+                quantity(first, "s"),
+                quantity(last, "s")
+            );
+        }
+        if never > 0 {
+            text += &format!(", {} of them never", count(never));
+        }
+        let line = self.line(Section::Conditions, "activation", text);
+        line.fact("activated_points", "", points)
+            .fact("never_activated_points", "", never);
+        if points > never {
+            line.fact("activation_start", "s", first)
+                .fact("activation_end", "s", last);
+        }
     }
 
     /// Adds pieces, contact and impactors.

@@ -48,6 +48,7 @@ impl Facts {
         facts.device(assembly);
         facts.loads(assembly);
         facts.heat(assembly);
+        facts.activation(assembly);
         facts.contact(model, assembly);
         facts.boundaries(assembly);
         facts.warnings = warnings;

@@ -36,7 +36,7 @@ fn with_rows(text: &str, rows: &[f64]) -> Built {
         read_table: &|path, points, columns, _| {
             assert_eq!(path, Path::new("decks/state.txt"));
             assert_eq!(columns, ["u_x", "u_y", "u_z", "v_x", "v_y", "v_z"]);
-            assert_eq!(6 * points, rows.len());
+            assert_eq!(points.map(|points| 6 * points), Some(rows.len()));
             Ok(rows.to_vec())
         },
         ..Resources::default()
@@ -159,7 +159,7 @@ end = "10 us"
 "#;
     let deck = Deck::parse(text, "bar.toml", &[]).unwrap();
     let built = deck.build_with(Resources {
-        read_table: &|_, points, columns, _| Ok(vec![0.0; points * columns.len()]),
+        read_table: &|_, points, columns, _| Ok(vec![0.0; points.unwrap() * columns.len()]),
         ..Resources::default()
     });
     let says = match built {
@@ -200,7 +200,7 @@ fn displacements_that_break_intact_bonds_at_once_are_rejected() {
                 read_table: &|_, points, _, _| {
                     // In the order of the field files, row by row along x.
                     let row = |k: usize| [moved(0.5 + (k % 20) as f64), 0.0, 0.0, 0.0];
-                    Ok((0..points).flat_map(row).collect())
+                    Ok((0..points.unwrap()).flat_map(row).collect())
                 },
                 ..Resources::default()
             })

@@ -5,6 +5,7 @@ mod common;
 #[path = "../../../pericles-deck/tests/common/mod.rs"]
 mod decks;
 
+mod activation;
 mod anisotropy;
 mod bond_energy;
 mod breaking_energy;

@@ -16,6 +16,7 @@
 mod coarse;
 mod dissipation;
 mod form;
+mod growth;
 mod lattice;
 mod list;
 mod set;
@@ -29,6 +30,7 @@ pub use coarse::{
 };
 pub use dissipation::PointDissipation;
 pub use form::{CountedBond, Form};
+pub(crate) use growth::origin_of_entry;
 pub(crate) use lattice::NO_LATTICE;
 pub use lattice::{Chunk, GridLayout, Lattice, Stencil};
 pub use set::BondSet;
@@ -39,12 +41,15 @@ use crate::error::Result;
 use crate::parallel::{Cost, PointSubset, components_mut, for_each_part};
 use crate::sum::BinnedSum;
 
+use self::growth::Growth;
+
 /// The bonds of a body in a form, with their state.
 #[derive(Debug, Clone)]
 pub struct Neighbourhood<F> {
     form: F,
     blocks: Vec<BlockDamage>,
     measure: DamageMeasure,
+    growth: Growth,
 }
 
 /// The other end of a bond that broke in a sweep over a subset of points.
@@ -66,6 +71,7 @@ impl<F: Form> Neighbourhood<F> {
             blocks: blocks.collect(),
             form,
             measure,
+            growth: Growth::default(),
         }
     }
 
@@ -114,7 +120,7 @@ impl<F: Form> Neighbourhood<F> {
     }
 
     /// Calls `visit(first point of the block, bond, parts of the components of `out`)` for all bonds that count in the
-    /// damage.
+    /// damage; bonds of points that are not active yet do not.
     pub fn for_each_counted<const C: usize>(
         &self,
         out: &mut [f64],
@@ -124,7 +130,11 @@ impl<F: Form> Neighbourhood<F> {
         self.for_each_block::<C>(cost, out, |block, intact, out| {
             let first = self.form.first_point(block);
             self.form
-                .for_each_counted(block, intact, self.measure, |bond| visit(first, bond, out));
+                .for_each_counted(block, intact, self.measure, |bond| {
+                    if !self.growth.is_pending(bond.entry) {
+                        visit(first, bond, out);
+                    }
+                });
         });
     }
 
@@ -250,10 +260,10 @@ impl<F: Form> BondSet for Neighbourhood<F> {
         self.form.for_each_intact_of(&self.blocks, i, visit);
     }
 
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+    fn for_each_change_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
         for (number, broken) in self.broken_by_blocks().into_iter().enumerate() {
             let points = [number, number + 1].map(|block| self.form.first_point(block));
-            visit(points[0]..points[1], broken);
+            visit(points[0]..points[1], broken + self.growth.changes(number));
         }
     }
 }
@@ -262,10 +272,12 @@ impl<F: Form> Checkpointed for Neighbourhood<F> {
     fn save(&self, archive: &mut Archive) {
         self.form.save(&self.blocks, archive);
         tally::save(F::NAME, &self.blocks, archive);
+        self.growth.save(archive);
     }
 
     fn restore(&mut self, archive: &Archive) -> Result<()> {
         self.form.restore(&mut self.blocks, archive)?;
-        tally::restore(F::NAME, &mut self.blocks, archive)
+        tally::restore(F::NAME, &mut self.blocks, archive)?;
+        self.growth.restore(archive)
     }
 }

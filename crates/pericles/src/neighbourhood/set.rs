@@ -32,6 +32,7 @@ pub trait BondSet {
     fn for_each_intact_of(&self, i: usize, visit: &mut dyn FnMut(usize));
 
     /// Calls `visit` with ranges of points that together contain all points, and the number of directed bonds that
-    /// broke so far in each: a changed number shows where bonds broke since an earlier call. The ranges do not change.
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64));
+    /// broke or came into being so far in each: a changed number shows where bonds changed since an earlier call. The
+    /// ranges do not change.
+    fn for_each_change_count(&self, visit: &mut dyn FnMut(Range<usize>, u64));
 }

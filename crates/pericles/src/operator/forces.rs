@@ -351,9 +351,9 @@ impl BondSet for Forces {
         }
     }
 
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+    fn for_each_change_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
         for breaking in self.breaking() {
-            breaking.bonds().for_each_broken_count(visit);
+            breaking.bonds().for_each_change_count(visit);
         }
     }
 }

@@ -28,6 +28,7 @@ const OF_GRID: &[Limit] = &[
     Limit::BOND_ENERGY,
     Limit::STRESS_FAILURE,
     Limit::SOFTENING,
+    Limit::ACTIVATION,
 ];
 
 /// State-based materials and thermal expansion are not supported in single precision.

@@ -55,11 +55,13 @@ pub enum Feature {
     ThermalExpansion,
     /// Bonds that soften before they break.
     Softening,
+    /// Points that become active during the run.
+    Activation,
 }
 
 impl Feature {
     /// All features, in the order of the table.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::BondStretch,
         Self::GreenStrainBar,
         Self::GreenStrain,
@@ -83,6 +85,7 @@ impl Feature {
         Self::Tensors,
         Self::ThermalExpansion,
         Self::Softening,
+        Self::Activation,
     ];
 
     /// Returns the name of the feature in messages and tables.
@@ -111,6 +114,7 @@ impl Feature {
             Self::Tensors => "output of stress and strain",
             Self::ThermalExpansion => "thermal expansion",
             Self::Softening => "bond softening",
+            Self::Activation => "activation of points",
         }
     }
 
@@ -205,6 +209,12 @@ impl Limit {
     pub const SOFTENING: Self = Self::new(
         Feature::Softening,
         "the largest stretch of each bond is stored with a neighbour list only; use bonds = \"list\" or omit `bonds`",
+    );
+
+    /// Limit of all kernels except lists.
+    pub const ACTIVATION: Self = Self::new(
+        Feature::Activation,
+        "the displacements at which bonds come into being are stored with a neighbour list only; use bonds = \"list\" or omit `bonds`",
     );
 
     /// Limit of kernels that need a single lattice.

@@ -36,6 +36,7 @@ mod form;
 mod ghosts;
 mod graded;
 mod grid;
+mod growing;
 mod heating;
 mod limits;
 mod linearisation;
@@ -65,6 +66,7 @@ pub use form::BondForm;
 pub use ghosts::{GhostForce, GhostLayer};
 pub use graded::{GradedBody, Materials};
 pub use grid::GridForce;
+pub use growing::Growing;
 pub use limits::{Feature, Features, Limit};
 pub use linearisation::Linearisation;
 pub use list::{BondForce, SofteningForce};
@@ -160,6 +162,11 @@ pub trait Force: Checkpointed + Send + Sync {
 
     /// Returns the material for setting factors of the stiffness and the yield stress of points, if the force supports them.
     fn pointwise_mut(&mut self) -> Option<&mut dyn Pointwise> {
+        None
+    }
+
+    /// Returns the force as one whose bonds come into being during a run, if it supports this.
+    fn growing_mut(&mut self) -> Option<&mut dyn Growing> {
         None
     }
 

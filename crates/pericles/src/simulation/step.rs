@@ -40,6 +40,10 @@ impl Simulation {
                 interrupt,
             )
             .and_then(|()| self.system.end_fields(self.state.t));
+        if stepped.is_ok() {
+            self.system
+                .activate(&mut self.state, self.integrator.is_static());
+        }
         if fallible && self.system.has_failed() {
             stepped = Err(PericlesError::Interrupted);
         }

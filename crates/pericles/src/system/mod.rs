@@ -1,5 +1,6 @@
 //! The semi-discrete equation of motion, which integrators advance.
 
+mod activation;
 mod booking;
 mod interactions;
 mod loading;
@@ -10,6 +11,8 @@ mod supports;
 
 use std::sync::Arc;
 
+use self::activation::Activation;
+pub use self::activation::ActivationRange;
 use crate::accounts::Ledger;
 use crate::archive::Counter;
 use crate::boundary::{
@@ -39,6 +42,7 @@ pub struct System {
     boundaries: Vec<Box<dyn Boundary>>,
     interactions: Vec<Box<dyn Interaction>>,
     fields: Vec<Box<dyn SecondaryField>>,
+    activation: Option<Activation>,
     ledger: Ledger,
     evaluated: Counter,
     pub(crate) coarse_breaks: Counter,
@@ -86,6 +90,7 @@ impl System {
             boundaries: Vec::new(),
             interactions: Vec::new(),
             fields: Vec::new(),
+            activation: None,
             ledger: Ledger::default(),
             evaluated: Counter::default(),
             coarse_breaks: Counter::default(),
@@ -339,6 +344,7 @@ impl System {
         for motion in &self.motions {
             motion.accelerate(t, on, self.cloud.len(), out);
         }
+        self.hold_inactive(out);
         let stage = Stage {
             t,
             u,

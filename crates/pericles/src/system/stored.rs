@@ -11,11 +11,15 @@ crate::saved! {
         boundaries: part,
         interactions: part,
         fields: part,
+        activation: part,
         ledger: array("ledger"),
         loading: array("loading"),
         evaluated: by(Laid::new("evaluated", Layout::Count)),
         coarse_breaks: by(Laid::new("coarse breaks", Layout::Count)),
         cloud, density, loads: fixed,
+    } then |system| {
+        system.note_active();
+        Ok(())
     }
 }
 

@@ -35,6 +35,7 @@ impl System {
         for motion in &self.motions {
             motion.drive(t, on, self.points(), v);
         }
+        self.hold_inactive(v);
     }
 
     /// Applies prescribed mean velocities of the step from t to t + dt to the points of `on`.
@@ -42,6 +43,7 @@ impl System {
         for motion in &self.motions {
             motion.drive_mean(t, dt, on, self.points(), v);
         }
+        self.hold_inactive(v);
     }
 
     /// Lets boundaries damp the velocities of unconstrained points over a time dt and returns work and impulse
@@ -79,11 +81,12 @@ impl System {
         }
     }
 
-    /// Zeros the entries prescribed at time t.
+    /// Zeros the entries prescribed at time t, and those of points that are not active.
     pub fn hold_at(&self, t: f64, vector: &mut [f64]) {
         for motion in self.motions.iter().filter(|motion| motion.holds(t)) {
             motion.zero(self.points(), vector);
         }
+        self.hold_inactive(vector);
     }
 
     /// Computes K d / ρ at displacement u, zero on the entries prescribed at time t ([`System::vibration_into`]

@@ -47,6 +47,7 @@ impl Respa {
             reason: "it applies parts of the force at different times, but boundaries with memory support a single time step only; use velocity-verlet",
         },
         PARTS_OF_THE_BODY,
+        Requirement::NO_ACTIVATION,
         Requirement {
             need: Need::NoInteractions,
             reason: "a contact may join points of zones with different time steps, whose forces are then known at different times; use velocity-verlet",

@@ -360,7 +360,7 @@ impl BondSet for GhostForce {
         }
     }
 
-    fn for_each_broken_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
+    fn for_each_change_count(&self, visit: &mut dyn FnMut(Range<usize>, u64)) {
         visit(0..self.points(), 0);
     }
 }

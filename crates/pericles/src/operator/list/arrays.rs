@@ -4,6 +4,8 @@ use super::stiffness::Stiffness;
 use crate::family::BondList;
 use crate::lanes::LANES;
 use crate::lanes::{Lanes, dot, vector};
+use crate::material::PairForce;
+use crate::neighbourhood::{Neighbourhood, origin_of_entry};
 use crate::operator::fast_law::FixedBond;
 use crate::operator::records::Records;
 
@@ -19,6 +21,8 @@ pub(super) struct Bonds<'a> {
     pub(super) partners: Option<&'a [bool]>,
     /// Rows that begin with the thermal stretch τ of a site; `None` for a body without thermal expansion.
     heat: Option<&'a Records>,
+    /// η₀ of the bonds of a growing body, as in [`Neighbourhood::origin`](crate::neighbourhood::Neighbourhood::origin).
+    origin: &'a [f64],
 }
 
 /// Data shared by all bonds of a point.
@@ -34,11 +38,12 @@ impl<'a> Bonds<'a> {
     /// # Panics
     /// If the numbers of rows and sites differ.
     pub fn new(
-        list: &'a BondList,
+        bonds: &'a Neighbourhood<BondList>,
         reference: &'a Records,
         unit: [f64; 3],
         stiffness: &'a Stiffness,
     ) -> Self {
+        let list = bonds.form();
         assert_eq!(reference.len(), list.sites().len(), "a row for every site");
         Self {
             list,
@@ -47,6 +52,7 @@ impl<'a> Bonds<'a> {
             stiffness,
             partners: None,
             heat: None,
+            origin: bonds.origin(),
         }
     }
 
@@ -60,14 +66,21 @@ impl<'a> Bonds<'a> {
         Self { heat, ..self }
     }
 
-    /// Returns the vectors (1 + τ) ξ and η − τ ξ of a bond between two sites, to which its law is applied,
-    /// and the factor 1 + τ of its stiffness.
-    pub fn expanded<const D: usize>(
+    /// Returns the vectors (1 + τ) ξ₀ and η − η₀ − τ ξ₀ of the bond of an entry between two sites, to which its law is
+    /// applied, and the factor 1 + τ of its stiffness. ξ₀ is ξ + η₀, or ξ for a linear law.
+    pub fn relative<L: PairForce, const D: usize>(
         &self,
+        entry: usize,
         [i, j]: [usize; 2],
         xi: [f64; D],
         eta: [f64; D],
     ) -> ([f64; D], [f64; D], f64) {
+        let origin: [f64; D] = origin_of_entry(self.origin, entry);
+        let eta = std::array::from_fn(|c| eta[c] - origin[c]);
+        let xi = match L::LINEAR {
+            true => xi,
+            false => std::array::from_fn(|c| xi[c] + origin[c]),
+        };
         let Some(heat) = self.heat else {
             return (xi, eta, 1.0);
         };
@@ -108,9 +121,9 @@ impl<'a> Bonds<'a> {
         unsafe { T::gather(field, indices) }
     }
 
-    /// Returns the eight bonds of a group and their η.
+    /// Returns the eight bonds of a group, with ξ₀ in place of ξ, and their η − η₀; see [`Bonds::relative`].
     #[inline(always)]
-    pub(super) fn group<T: Lanes, const D: usize>(
+    pub(super) fn group<T: Lanes, L: PairForce, const D: usize>(
         &self,
         group: usize,
         here: &Here<T, D>,
@@ -118,17 +131,34 @@ impl<'a> Bonds<'a> {
     ) -> (FixedBond<T, D>, [T; D]) {
         let reference = self.there::<T>(group, self.reference);
         let there = self.there::<T>(group, u);
-        let xi: [T; D] = vector(|c| (reference[c] - here.reference[c]) * T::splat(self.unit[c]));
-        let eta = vector(|c| there[c] - here.u[c]);
+        let mut xi: [T; D] =
+            vector(|c| (reference[c] - here.reference[c]) * T::splat(self.unit[c]));
+        let mut eta: [T; D] = vector(|c| there[c] - here.u[c]);
         let mut square = xi[0] * xi[0];
         for c in 1..D {
             square = xi[c].mul_add(xi[c], square);
         }
-        let inverse = square.inverse_root();
+        let mut inverse = square.inverse_root();
         let cells = [here.cell, there[3]];
         let stiffness = self
             .stiffness
             .of_group(group, square * inverse, reference[3], cells);
+        if !self.origin.is_empty() {
+            for c in 0..D {
+                let origin = T::load(self.origin, (group * D + c) * LANES);
+                eta[c] = eta[c] - origin;
+                if !L::LINEAR {
+                    xi[c] = xi[c] + origin;
+                }
+            }
+            if !L::LINEAR {
+                let mut square = xi[0] * xi[0];
+                for c in 1..D {
+                    square = xi[c].mul_add(xi[c], square);
+                }
+                inverse = square.inverse_root();
+            }
+        }
         let bond = FixedBond {
             xi,
             inverse_square: inverse * inverse,

@@ -72,12 +72,12 @@ pub(super) fn break_row<L: PairForce, const D: usize>(
             let j = neighbours[lane];
             let xi: [f64; D] = bonds.vector(here, j);
             let eta: [f64; D] = std::array::from_fn(|c| u[j][c] - u[here][c]);
-            let (xi, eta, scale) = bonds.expanded([here, j], xi, eta);
+            let entry = group * LANES + lane;
+            let (xi, eta, scale) = bonds.relative::<L, D>(entry, [here, j], xi, eta);
             let (measure, square) = L::stretch_measure(xi, eta);
             if measure > rule.threshold_of(here, j) * square {
                 any = true;
                 *intact &= !(1 << lane);
-                let entry = group * LANES + lane;
                 let cells = [u[here][3], u[j][3]];
                 let stiffness = scale * bonds.stiffness_of::<D>(entry, [here, j], cells);
                 let stretch = rule.critical_stretch_of(here, j);

@@ -38,14 +38,14 @@ impl<L: VectorLaw, const D: usize> Breakable for BondForce<L, D> {
         let (u, sites) = (Field::new(u, &ghosts), self.bonds.form().sites());
         let heat = self.latest_heat();
         let bonds = self.view().heated(heat.as_deref().map(Vec::as_slice));
-        let over = |a: usize, b: usize| {
+        let over = |entry: usize, a: usize, b: usize| {
             let eta = u.difference::<D>([a, b].map(|site| sites.point(site)));
-            let (xi, eta, _) = bonds.expanded([a, b], bonds.vector(a, b), eta);
+            let (xi, eta, _) = bonds.relative::<L, D>(entry, [a, b], bonds.vector(a, b), eta);
             let (measure, square) = L::stretch_measure(xi, eta);
             measure > threshold(a, b) * square
         };
         let list = self.bonds.form();
         self.bonds
-            .mark(marks, |i, _, site| over(list.site(i), site));
+            .mark(marks, |i, entry, site| over(entry, list.site(i), site));
     }
 }

@@ -219,12 +219,7 @@ impl<L: VectorLaw, const D: usize> BondForce<L, D> {
     }
 
     pub(super) fn view(&self) -> Bonds<'_> {
-        Bonds::new(
-            self.bonds.form(),
-            &self.reference,
-            self.unit,
-            &self.stiffness,
-        )
+        Bonds::new(&self.bonds, &self.reference, self.unit, &self.stiffness)
     }
 
     /// Calls `work` with a vector packed for the requested points and their neighbours.

@@ -43,7 +43,7 @@ fn fast_force<T: Lanes, L: VectorLaw, const D: usize>(
         if mask == 0 {
             continue;
         }
-        let (bond, eta) = bonds.group(group, &here, u);
+        let (bond, eta) = bonds.group::<T, L, D>(group, &here, u);
         let t = L::strain(&bond, eta).masked(mask);
         fast.largest = t.max(fast.largest);
         fast.smallest = t.min(fast.smallest);
@@ -69,7 +69,7 @@ fn exact_force<T: Lanes, L: VectorLaw, const D: usize>(
         if mask == 0 {
             continue;
         }
-        let (bond, eta) = bonds.group(group, &here, u);
+        let (bond, eta) = bonds.group::<T, L, D>(group, &here, u);
         let force = L::force(bond.xi, eta);
         for c in 0..D {
             sum[c] = sum[c] + (bond.stiffness * force[c]).masked(mask);
@@ -176,7 +176,7 @@ fn energy_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
         let first = bonds.list.start()[i];
         let mut total = T::splat(0.0);
         for k in 0..groups.len() {
-            let (bond, eta) = bonds.group(first + k, &here, u);
+            let (bond, eta) = bonds.group::<T, L, D>(first + k, &here, u);
             let energy = bond.stiffness * L::energy(bond.xi, eta);
             total = total + energy.masked(intact[groups.start + k]);
         }
@@ -202,7 +202,7 @@ fn tangent_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
         let first = bonds.list.start()[i];
         let mut total = [T::splat(0.0); D];
         for k in 0..groups.len() {
-            let (bond, eta) = bonds.group(first + k, &here, u);
+            let (bond, eta) = bonds.group::<T, L, D>(first + k, &here, u);
             let there = bonds.there::<T>(first + k, direction);
             let d = vector(|c| there[c] - direction_here[c]);
             let force = L::tangent(bond.xi, eta, d);

@@ -10,6 +10,7 @@ mod arrays;
 mod breaking;
 mod damage;
 mod force;
+mod growing;
 mod heat;
 mod heated;
 mod kernels;

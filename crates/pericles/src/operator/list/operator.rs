@@ -5,8 +5,8 @@ use super::kernels::{energy_rows, force_rows, tangent_rows};
 use crate::neighbourhood::Form;
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::{
-    BondAt, BondValues, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings,
-    LinearOperator, Linearity, PointSubset, SplitForce,
+    BondAt, BondValues, BondView, Breakable, Capabilities, Force, Growing, InstructionSet,
+    LatticeSprings, LinearOperator, Linearity, PointSubset, SplitForce,
 };
 use crate::step_end::StepEnd;
 use crate::thermal::Expandable;
@@ -110,8 +110,8 @@ impl<L: VectorLaw, const D: usize> Force for BondForce<L, D> {
 
     fn capabilities(&self) -> Capabilities<'_> {
         Capabilities {
-            // With thermal stretch the force is affine: it does not vanish at rest.
-            linear: match L::LINEAR && self.heat.is_none() {
+            // With thermal stretch or growth the force is affine: it does not vanish at rest.
+            linear: match L::LINEAR && self.heat.is_none() && self.bonds.origin().is_empty() {
                 true => Linearity::Exact(self),
                 false => Linearity::Nonlinear,
             },
@@ -140,6 +140,10 @@ impl<L: VectorLaw, const D: usize> Force for BondForce<L, D> {
     fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
         Some(self)
     }
+
+    fn growing_mut(&mut self) -> Option<&mut dyn Growing> {
+        Some(self)
+    }
 }
 
 impl<L: VectorLaw, const D: usize> BondView for BondForce<L, D> {
@@ -151,7 +155,7 @@ impl<L: VectorLaw, const D: usize> BondView for BondForce<L, D> {
         for (entry, b) in self.bonds.intact_of(i) {
             let xi: [f64; D] = bonds.vector(here, b);
             let eta = u.difference::<D>([i, sites.point(b)]);
-            let (free, pulled, scale) = bonds.expanded([here, b], xi, eta);
+            let (free, pulled, scale) = bonds.relative::<L, D>(entry, [here, b], xi, eta);
             let stiffness = scale * self.stiffness_of(entry, i, b);
             let force = L::force(free, pulled).map(|force| stiffness * force);
             visit(BondAt::new(sites.point(b), xi, eta, force).of_small_strain(L::LINEAR));

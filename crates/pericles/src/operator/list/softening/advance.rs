@@ -71,11 +71,16 @@ struct Stretched<const D: usize> {
 }
 
 impl<const D: usize> Stretched<D> {
-    /// Returns the bond between two sites.
-    fn of<L: VectorLaw>(bonds: &Bonds<'_>, u: &Records, [here, j]: [usize; 2]) -> Self {
+    /// Returns the bond of an entry between two sites.
+    fn of<L: VectorLaw>(
+        bonds: &Bonds<'_>,
+        u: &Records,
+        entry: usize,
+        [here, j]: [usize; 2],
+    ) -> Self {
         let xi: [f64; D] = bonds.vector(here, j);
         let eta: [f64; D] = std::array::from_fn(|c| u[j][c] - u[here][c]);
-        let (xi, eta, scale) = bonds.expanded([here, j], xi, eta);
+        let (xi, eta, scale) = bonds.relative::<L, D>(entry, [here, j], xi, eta);
         let (measure, square) = L::stretch_measure(xi, eta);
         Self {
             ends: [here, j],
@@ -144,7 +149,8 @@ pub(super) fn open_rows<L: VectorLaw, const D: usize>(
                 let Some((curve, factor)) = rule.kept.curves.of(here, j) else {
                     continue;
                 };
-                let stretched = Stretched::<D>::of::<L>(bonds, u, [here, j]);
+                let entry = (first + k) * LANES + lane;
+                let stretched = Stretched::<D>::of::<L>(bonds, u, entry, [here, j]);
                 let critical = factor * curve.critical_stretch();
                 let ends = [here, j].map(|site| rule.kept.curves.of_point(site).0);
                 let onset = match mark {
@@ -156,7 +162,7 @@ pub(super) fn open_rows<L: VectorLaw, const D: usize>(
                     onsets[index] = onset;
                     continue;
                 }
-                let bond = stretched.bond::<L>(bonds, rule, u, (i, (first + k) * LANES + lane));
+                let bond = stretched.bond::<L>(bonds, rule, u, (i, entry));
                 let energy = match rule.step.is_start() {
                     true => 0.0,
                     false => rule.step.dissipated(&bond),
@@ -196,14 +202,15 @@ fn soften_row<L: VectorLaw, const D: usize>(
             let Some((curve, factor)) = kept.curve(k * LANES + lane, [here, j]) else {
                 continue;
             };
-            let stretched = Stretched::<D>::of::<L>(bonds, u, [here, j]);
+            let entry = group * LANES + lane;
+            let stretched = Stretched::<D>::of::<L>(bonds, u, entry, [here, j]);
             let now = stretched.stretch;
             let before = largest[k * LANES + lane];
             if !(now > before && now > factor * curve.onset()) {
                 continue;
             }
             largest[k * LANES + lane] = now;
-            let bond = stretched.bond::<L>(bonds, rule, u, (i, group * LANES + lane));
+            let bond = stretched.bond::<L>(bonds, rule, u, (i, entry));
             let length = dot(stretched.xi, stretched.xi).sqrt();
             let dissipated = rule.dissipated((&curve, factor), [before, now], &bond, length);
             tally.dissipate(i, 0.5 * dissipated);

@@ -44,7 +44,7 @@ impl<L: VectorLaw, const D: usize> Breakable for SofteningForce<L, D> {
                 return false;
             };
             let eta = u.difference::<D>([a, b].map(|site| sites.point(site)));
-            let (xi, eta, _) = bonds.expanded([a, b], bonds.vector(a, b), eta);
+            let (xi, eta, _) = bonds.relative::<L, D>(entry, [a, b], bonds.vector(a, b), eta);
             let (measure, square) = L::stretch_measure(xi, eta);
             L::stretch(measure / square) > fraction * factor * curve.end()
         };

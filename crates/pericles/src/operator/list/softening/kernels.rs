@@ -163,7 +163,7 @@ pub(super) fn point_force<T: Lanes, L: VectorLaw, const D: usize>(
         if mask == 0 {
             continue;
         }
-        let (bond, eta) = bonds.group(group, &here, u);
+        let (bond, eta) = bonds.group::<T, L, D>(group, &here, u);
         let force = L::force(bond.xi, eta);
         let (factor, grown) = retained::<T, L, D>(bonds, kept, [site, group], (&bond, eta), mask);
         any |= grown;
@@ -221,7 +221,7 @@ fn energy_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
         let mut total = T::splat(0.0);
         for k in 0..groups.len() {
             let mask = intact[groups.start + k];
-            let (bond, eta) = bonds.group(first + k, &here, u);
+            let (bond, eta) = bonds.group::<T, L, D>(first + k, &here, u);
             let ends = [site, first + k];
             let (factor, _) = retained::<T, L, D>(bonds, kept, ends, (&bond, eta), mask);
             let energy = bond.stiffness * factor * L::energy(bond.xi, eta);
@@ -279,7 +279,7 @@ fn tangent_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
         let mut total = [T::splat(0.0); D];
         for k in 0..groups.len() {
             let (group, mask) = (first + k, intact[groups.start + k]);
-            let (bond, eta) = bonds.group(group, &here, u);
+            let (bond, eta) = bonds.group::<T, L, D>(group, &here, u);
             let there = bonds.there::<T>(group, direction);
             let d = vector(|c| there[c] - direction_here[c]);
             let mut force = L::tangent(bond.xi, eta, d);

@@ -6,8 +6,8 @@ use super::kernels::{Change, Softened, energy_rows, force_rows, tangent_rows};
 use crate::operator::fast_law::VectorLaw;
 use crate::operator::heating::heating_of;
 use crate::operator::{
-    BondAt, BondValues, BondView, Breakable, Capabilities, Force, InstructionSet, LatticeSprings,
-    PointSubset,
+    BondAt, BondValues, BondView, Breakable, Capabilities, Force, Growing, InstructionSet,
+    LatticeSprings, PointSubset,
 };
 use crate::step_end::StepEnd;
 use crate::thermal::Expandable;
@@ -155,6 +155,14 @@ impl<L: VectorLaw, const D: usize> Force for SofteningForce<L, D> {
     fn expandable_mut(&mut self) -> Option<&mut dyn Expandable> {
         self.list.expandable_mut()
     }
+
+    /// The stiffness of the family of a point, to which strengths refer, must not change.
+    fn growing_mut(&mut self) -> Option<&mut dyn Growing> {
+        match self.gate {
+            None => Some(&mut self.list),
+            Some(_) => None,
+        }
+    }
 }
 
 /// Bonds have the damage at the end of the last step.
@@ -168,7 +176,7 @@ impl<L: VectorLaw, const D: usize> BondView for SofteningForce<L, D> {
         for (entry, b) in list.bonds.intact_of(i) {
             let xi: [f64; D] = bonds.vector(here, b);
             let eta = u.difference::<D>([i, sites.point(b)]);
-            let (free, pulled, scale) = bonds.expanded([here, b], xi, eta);
+            let (free, pulled, scale) = bonds.relative::<L, D>(entry, [here, b], xi, eta);
             let stiffness = scale * self.retained(i, entry, b) * list.stiffness_of(entry, i, b);
             let force = L::force(free, pulled).map(|force| stiffness * force);
             visit(BondAt::new(sites.point(b), xi, eta, force).of_small_strain(L::LINEAR));

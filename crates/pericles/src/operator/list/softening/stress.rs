@@ -33,7 +33,7 @@ fn stress_rows_body<T: Lanes, L: VectorLaw, const D: usize>(
             if mask == 0 {
                 continue;
             }
-            let (bond, eta) = bonds.group(first + k, &here, u);
+            let (bond, eta) = bonds.group::<T, L, D>(first + k, &here, u);
             let ends = [site, first + k];
             let (factor, _) = retained::<T, L, D>(bonds, kept, ends, (&bond, eta), mask);
             let stiffness = bond.stiffness * factor;
