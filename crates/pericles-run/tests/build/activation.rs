@@ -178,6 +178,38 @@ fn resumed_runs_of_growing_bodies_are_bitwise_identical() {
 }
 
 #[test]
+fn every_scheme_integrates_growing_bodies() {
+    for model in [MODELS[0], MODELS[1]] {
+        let deck = |scheme: &str| {
+            let deck = GROWING.replace("MODEL", model);
+            deck.replace("dt = 0.05", &format!("dt = 0.05, scheme = \"{scheme}\""))
+        };
+        let reference = end(&deck("velocity-verlet"));
+        let largest = reference
+            .state()
+            .u
+            .iter()
+            .fold(0.0f64, |most, u| most.max(u.abs()));
+        for scheme in [
+            "rk4",
+            "dormand-prince",
+            "newmark",
+            "discrete-gradient",
+            "implicit-midpoint",
+            "trapezoidal",
+            "trigonometric",
+        ] {
+            let run = end(&deck(scheme));
+            let pairs = run.state().u.iter().zip(&reference.state().u);
+            let error = pairs.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
+            assert!(error < 2e-3 * largest, "{scheme}: {error:e} of {largest:e}");
+            check_resume(|| build(&deck(scheme)).simulation(), [31, 118])
+                .unwrap_or_else(|error| panic!("{scheme}: {error}"));
+        }
+    }
+}
+
+#[test]
 fn growth_does_not_depend_on_threads() {
     for model in MODELS {
         let deck = GROWING

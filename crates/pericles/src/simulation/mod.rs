@@ -123,7 +123,7 @@ impl Simulation {
             let what = "the vectors of a time integrator made for another system";
             check_length(what, made_for, entries)?;
         }
-        system.start_activation(&mut state);
+        system.start_activation(state.t, &mut state.v);
         integrator.start(&mut system, &mut state);
         let start = StartEnergy {
             energy: system.mechanical_energy(state.t, &state.u, &state.v),

@@ -4,6 +4,7 @@ use super::Simulation;
 use crate::archive::{Archive, Checkpointed};
 use crate::error::PericlesError;
 use crate::interrupt::Interrupt;
+use crate::time::State;
 
 impl Simulation {
     /// Returns the number of steps to the next state that an observer sees, at most the number that the scheme takes at once.
@@ -41,8 +42,9 @@ impl Simulation {
             )
             .and_then(|()| self.system.end_fields(self.state.t));
         if stepped.is_ok() {
-            self.system
-                .activate(&mut self.state, self.integrator.is_static());
+            let State { t, u, v, a, .. } = &mut self.state;
+            let accelerations = (!self.integrator.is_static()).then_some(&mut a[..]);
+            self.system.activate(*t, [u, v], accelerations);
         }
         if fallible && self.system.has_failed() {
             stepped = Err(PericlesError::Interrupted);

@@ -7,7 +7,6 @@ use crate::operator::BondForm;
 use crate::parallel::PointSubset;
 use crate::solve::principal_axes;
 use crate::space::check_length;
-use crate::time::State;
 use crate::vector::dot;
 
 const NO_GROWTH: &str = "bonds that come into being must be free of force, but here the force of a bond depends on other \
@@ -131,36 +130,41 @@ impl System {
     }
 
     /// Removes the bonds of points that are not active at the start of a run.
-    pub(crate) fn start_activation(&mut self, state: &mut State) {
+    pub(crate) fn start_activation(&mut self, t: f64, v: &mut [f64]) {
         let Some(activation) = &mut self.activation else {
             return;
         };
-        activation.reached = state.t;
+        activation.reached = t;
         self.find_next();
         let active = self.active();
         if let Some(growing) = self.operator_mut().growing_mut() {
             growing.start_with(&active);
         }
-        self.hold_inactive(&mut state.v);
+        self.hold_inactive(v);
     }
 
-    /// Activates the points whose time has come at the end of a step, and computes the accelerations of the changed body.
-    pub(crate) fn activate(&mut self, state: &mut State, is_static: bool) {
+    /// Activates the points whose time has come at the end of a step: changes their displacements u and velocities v, and
+    /// computes the accelerations of the changed body, if it has any.
+    pub(crate) fn activate(
+        &mut self,
+        t: f64,
+        [u, v]: [&mut [f64]; 2],
+        accelerations: Option<&mut [f64]>,
+    ) {
         let Some(activation) = &mut self.activation else {
             return;
         };
-        if !is_due(activation.next, state.t) {
+        if !is_due(activation.next, t) {
             return;
         }
-        let before = activation.reached;
-        activation.reached = state.t;
+        let before = std::mem::replace(&mut activation.reached, t);
         let is_new = |i: &usize| activation.is_active(*i) && !is_due(activation.times[*i], before);
         let new: Vec<usize> = (0..activation.times.len()).filter(is_new).collect();
         self.find_next();
-        self.place_new(&new, state);
-        self.place_on(state.t, &PointSubset::All, &mut state.u);
-        self.drive_on(state.t, &PointSubset::All, &mut state.v);
-        self.book_new(&new, &state.v);
+        self.place_new(&new, [&mut *u, &mut *v]);
+        self.place_on(t, &PointSubset::All, u);
+        self.drive_on(t, &PointSubset::All, v);
+        self.book_new(&new, v);
         let (active, forces) = (self.active(), &mut self.forces);
         let points: Vec<u32> = new.iter().map(|&i| i as u32).collect();
         // The temperature at activation first: bonds come into being free of force at it.
@@ -168,20 +172,19 @@ impl System {
             field.set_new(&points);
         }
         if let Some(growing) = forces.sum_mut().growing_mut() {
-            growing.activate(state.t, &state.u, &active);
+            growing.activate(t, u, &active);
         }
         for field in &mut self.fields {
             field.read_bonds(forces.sum());
         }
-        if !is_static {
-            let State { t, u, v, a, .. } = state;
-            self.acceleration(*t, u, v, PointSubset::All, a);
+        if let Some(a) = accelerations {
+            self.acceleration(t, u, v, PointSubset::All, a);
         }
     }
 
     /// Gives new points the affine motion of the points of their families that are active or have been placed before; a
     /// point without any keeps its displacement and velocity.
-    fn place_new(&mut self, new: &[usize], state: &mut State) {
+    fn place_new(&mut self, new: &[usize], [u, v]: [&mut [f64]; 2]) {
         let (n, dimension) = (self.points(), self.dimension());
         let mut placed: Vec<f64> = (0..n)
             .map(|i| f64::from(u8::from(self.is_active(i))))
@@ -193,11 +196,8 @@ impl System {
         let mut left = new.to_vec();
         loop {
             let known = domain.with_ghosts(&placed).into_owned();
-            let ghosts = [&state.u, &state.v].map(|vector| domain.ghosts(vector));
-            let fields = [
-                Field::new(&state.u, &ghosts[0]),
-                Field::new(&state.v, &ghosts[1]),
-            ];
+            let ghosts = [&*u, &*v].map(|vector| domain.ghosts(vector));
+            let fields = [Field::new(u, &ghosts[0]), Field::new(v, &ghosts[1])];
             let mut found = Vec::new();
             let Some(growing) = self.forces.sum_mut().growing_mut() else {
                 return;
@@ -222,11 +222,11 @@ impl System {
             if domain.all(found.is_empty()) {
                 return;
             }
-            for (i, [u, v]) in found {
+            for (i, [moved, velocity]) in found {
                 placed[i] = 1.0;
                 for c in 0..dimension {
-                    state.u[c * n + i] = u[c];
-                    state.v[c * n + i] = v[c];
+                    u[c * n + i] = moved[c];
+                    v[c * n + i] = velocity[c];
                 }
             }
             left.retain(|&i| placed[i] == 0.0);
