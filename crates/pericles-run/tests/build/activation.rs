@@ -182,7 +182,7 @@ fn every_scheme_integrates_growing_bodies() {
     for model in [MODELS[0], MODELS[1]] {
         let deck = |scheme: &str| {
             let deck = GROWING.replace("MODEL", model);
-            deck.replace("dt = 0.05", &format!("dt = 0.05, scheme = \"{scheme}\""))
+            deck.replace("dt = 0.05", &format!("dt = 0.02, scheme = \"{scheme}\""))
         };
         let reference = end(&deck("velocity-verlet"));
         let largest = reference
