@@ -1,0 +1,162 @@
+//! Translation of values and expressions of boundary conditions.
+
+use pericles_deck::Expression;
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
+use serde::de::value::Error;
+
+use crate::table;
+
+/// A value of a boundary condition.
+#[derive(Debug)]
+pub(crate) struct Amount {
+    text: String,
+    constant: Option<f64>,
+    depends_on_time: bool,
+}
+
+impl Amount {
+    /// Translates a number or an expression of x, y, z and t whose time begins at `start`. Assignments to `value` and
+    /// element-wise operators are allowed.
+    ///
+    /// # Errors
+    /// Why there is no translation.
+    pub(crate) fn read(given: &str, start: f64) -> Result<Self, String> {
+        if let Ok(number) = given.parse() {
+            return Self::number(number);
+        }
+        let mut text = given.trim();
+        if let Some((name, value)) = text.split_once('=')
+            && name.trim() == "value"
+        {
+            text = value.trim().trim_end_matches(';');
+        }
+        let mut plain = text.to_owned();
+        for sign in ['*', '/', '+', '-', '^'] {
+            plain = plain.replace(&format!(".{sign}"), &sign.to_string());
+        }
+        let translated = words(&plain, start);
+        let deserializer = translated.as_str().into_deserializer();
+        let parsed = Expression::deserialize(deserializer);
+        let expression =
+            parsed.map_err(|error: Error| format!("not an expression of Pericles: {error}"))?;
+        let depends_on_time = expression.depends_on_time();
+        if !depends_on_time && !expression.depends_on_place() {
+            return Self::number(expression.value([0.0; 3], 0.0));
+        }
+        Ok(Self {
+            text: translated,
+            constant: None,
+            depends_on_time,
+        })
+    }
+
+    fn number(number: f64) -> Result<Self, String> {
+        if !number.is_finite() {
+            return Err("the value is not finite".into());
+        }
+        Ok(Self {
+            text: String::new(),
+            constant: Some(number),
+            depends_on_time: false,
+        })
+    }
+
+    /// Returns the value divided by a number.
+    pub(crate) fn over(self, divisor: f64) -> Self {
+        Self {
+            text: format!("({})/{}", self.text, table::number(divisor)),
+            constant: self.constant.map(|number| number / divisor),
+            ..self
+        }
+    }
+
+    /// Returns whether the value is other than zero and the same at all times.
+    pub(crate) fn is_steady(&self) -> bool {
+        !self.depends_on_time && self.constant != Some(0.0)
+    }
+
+    /// Returns the value as TOML.
+    pub(crate) fn toml(&self) -> String {
+        match self.constant {
+            Some(number) => table::number(number),
+            None => format!("{{ expression = {} }}", table::text(&self.text)),
+        }
+    }
+}
+
+/// Replaces names of functions and variables: natural logarithm, time since the start.
+fn words(text: &str, start: f64) -> String {
+    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let begins = is_letter(c) && !out.ends_with(|c: char| is_letter(c) || c == '.');
+        let length = if begins {
+            rest.find(|c: char| !is_letter(c)).unwrap_or(rest.len())
+        } else {
+            c.len_utf8()
+        };
+        let (word, left) = rest.split_at(length);
+        match word {
+            "log" => out.push_str("ln"),
+            "t" if start != 0.0 => out.push_str(&format!("(t + {})", table::number(start))),
+            // Time since the start of the step.
+            "st" => out.push('t'),
+            word => out.push_str(word),
+        }
+        rest = left;
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn translated(text: &str, start: f64) -> String {
+        Amount::read(text, start).unwrap().toml()
+    }
+
+    #[test]
+    fn expressions_keep_their_values() {
+        assert_eq!(translated("7.0e+5", 0.0), "7e5");
+        assert_eq!(
+            translated("value = x*10;", 0.0),
+            "{ expression = \"x*10\" }"
+        );
+        assert_eq!(
+            translated("1.*t .+ 2.5e-3*x", 0.0),
+            "{ expression = \"1*t + 2.5e-3*x\" }"
+        );
+        assert_eq!(
+            translated("log(t)+st", 2.0),
+            "{ expression = \"ln((t + 2))+t\" }"
+        );
+        assert_eq!(
+            translated("2*sin(pi/6)*10", 0.0)
+                .parse::<f64>()
+                .unwrap()
+                .round(),
+            10.0
+        );
+        assert_eq!(
+            Amount::read("6*t", 0.0).unwrap().over(2.0).toml(),
+            "{ expression = \"(6*t)/2\" }"
+        );
+    }
+
+    #[test]
+    fn conditionals_and_unknown_functions_have_no_translation() {
+        for text in [
+            "if t>2 0 else 20 end",
+            "cos(atan2(y,x))",
+            "",
+            "nan",
+            "1/0",
+            "value = 1; x = 2;",
+        ] {
+            assert!(Amount::read(text, 0.0).is_err(), "{text}");
+        }
+    }
+}
