@@ -20,10 +20,17 @@ use crate::region::{self, Frame};
 #[serde(deny_unknown_fields)]
 pub struct PointsFile {
     /// File of the geometry; a relative path starts at the deck's folder. Points: text file with one line
-    /// `x y z block volume` per point (m, m³).
+    /// `x y z block volume` per point.
     #[serde(rename = "file")]
     #[deck(key = "file")]
     pub path: PathBuf,
+    /// Points, mesh, solid, outline from a file: unit of length of the coordinates, such as "mm"; volumes of points are in its
+    /// third power. Required for mesh, solid and outline, because the file formats do not store it; default for points: "m".
+    ///
+    /// In m.
+    #[serde(default)]
+    #[deck(with = unit_of, check = check_unit)]
+    pub unit: Option<f64>,
     /// Listed points: their approximate distance.
     ///
     /// In m.
@@ -45,8 +52,8 @@ pub struct MeshFile {
     #[serde(rename = "file")]
     #[deck(key = "file")]
     pub path: PathBuf,
-    /// Mesh, solid, outline from a file: unit of length of the coordinates, such as "mm". Required with `file` for these
-    /// shapes, because the file formats do not store it; lists of points are in m.
+    /// Points, mesh, solid, outline from a file: unit of length of the coordinates, such as "mm"; volumes of points are in its
+    /// third power. Required for mesh, solid and outline, because the file formats do not store it; default for points: "m".
     ///
     /// In m.
     #[deck(with = unit_of, check = check_unit)]
@@ -148,8 +155,8 @@ pub enum Boundary {
         /// between polygons.
         #[serde(rename = "file")]
         path: PathBuf,
-        /// Mesh, solid, outline from a file: unit of length of the coordinates, such as "mm". Required with `file` for these
-        /// shapes, because the file formats do not store it; lists of points are in m.
+        /// Points, mesh, solid, outline from a file: unit of length of the coordinates, such as "mm"; volumes of points are in its
+        /// third power. Required for mesh, solid and outline, because the file formats do not store it; default for points: "m".
         ///
         /// In m.
         #[deck(

@@ -74,16 +74,23 @@ impl Assembler<'_> {
         const OFF: f64 = 2.0;
         let path = resources.beside(&file.path);
         let listed = (resources.read_points)(&path, file.dimension, resources.memory);
-        let listed = listed.map_err(|error| {
+        let mut listed = listed.map_err(|error| {
             let fault = error.fault(|reason| {
                 Fault::other(
                     "invalid",
                     reason,
-                    "expected: one line `x y z block volume` per point, in m and m³; a relative path starts at the deck's folder",
+                    "expected: one line `x y z block volume` per point, in `unit` (default: m) and its third power; a relative path starts at the deck's folder",
                 )
             });
             at_path("body.file", fault)
         })?;
+        let unit = file.unit.unwrap_or(1.0);
+        for place in &mut listed.positions {
+            *place = place.map(|x| x * unit);
+        }
+        for volume in &mut listed.volumes {
+            *volume *= unit.powi(3);
+        }
         let cloud = listed
             .cloud(file.dimension, solid.shape.section())
             .map_err(|error| at("body.file", error))?;
@@ -106,7 +113,7 @@ impl Assembler<'_> {
                 quantity(given, "m")
             ),
             format!(
-                "check `spacing`, and the units of the file: coordinates in m, volumes in m³{}",
+                "check `spacing`, and `unit`: coordinates are in this unit of length (default: m), volumes in its third power{}",
                 section.unwrap_or_default()
             ),
         );
