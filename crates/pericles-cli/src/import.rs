@@ -23,7 +23,8 @@ pub(crate) fn import(args: &ImportArgs) -> Result<Exit, CliError> {
         return Err(CliError::DeckExists { path: out.into() });
     }
     let folder = out.parent().unwrap_or(Path::new(""));
-    let imported = pericles_import::import(&args.file, folder)?;
+    let imported =
+        pericles_import::import(&args.file, folder, &args.units.clone().unwrap_or_default())?;
     let (file, name) = (args.file.display(), out.display());
     for remark in &imported.remarks {
         let kind = if remark.is_translated {

@@ -6,10 +6,12 @@ use serde::de::IntoDeserializer;
 use serde::de::value::Error;
 
 use crate::table;
+use crate::units::{Quantity, Units};
 
 /// A value of a boundary condition.
 #[derive(Debug)]
 pub(crate) struct Amount {
+    /// The expression in units of the input file, of variables in SI units.
     text: String,
     constant: Option<f64>,
     depends_on_time: bool,
@@ -21,7 +23,7 @@ impl Amount {
     ///
     /// # Errors
     /// Why there is no translation.
-    pub(crate) fn read(given: &str, start: f64) -> Result<Self, String> {
+    pub(crate) fn read(given: &str, start: f64, units: &Units) -> Result<Self, String> {
         if let Ok(number) = given.parse() {
             return Self::number(number);
         }
@@ -35,7 +37,7 @@ impl Amount {
         for sign in ['*', '/', '+', '-', '^'] {
             plain = plain.replace(&format!(".{sign}"), &sign.to_string());
         }
-        let translated = words(&plain, start);
+        let translated = in_si_variables(&plain, start, units);
         let deserializer = translated.as_str().into_deserializer();
         let parsed = Expression::deserialize(deserializer);
         let expression =
@@ -76,17 +78,29 @@ impl Amount {
         !self.depends_on_time && self.constant != Some(0.0)
     }
 
-    /// Returns the value as TOML.
-    pub(crate) fn toml(&self) -> String {
-        match self.constant {
-            Some(number) => table::number(number),
-            None => format!("{{ expression = {} }}", table::text(&self.text)),
+    /// Returns the value in SI units, as TOML.
+    pub(crate) fn toml(&self, units: &Units, quantity: Quantity) -> String {
+        match (self.constant, units.factor(quantity)) {
+            (Some(number), _) => units.number(number, quantity),
+            (None, 1.0) => format!("{{ expression = {} }}", table::text(&self.text)),
+            (None, factor) => {
+                let text = format!(
+                    "{}*({})",
+                    table::number(table::rounded(factor, 12)),
+                    self.text
+                );
+                format!("{{ expression = {} }}", table::text(&text))
+            }
         }
     }
 }
 
-/// Replaces names of functions and variables: natural logarithm, time since the start.
-fn words(text: &str, start: f64) -> String {
+/// Replaces names of functions and variables: natural logarithm, time since the start, coordinates and time in SI units.
+pub(crate) fn in_si_variables(text: &str, start: f64, units: &Units) -> String {
+    let variable = |name: &str, quantity| match units.factor(quantity) {
+        1.0 => name.to_owned(),
+        factor => format!("({name}/{})", table::number(table::rounded(factor, 12))),
+    };
     let is_letter = |c: char| c.is_alphanumeric() || c == '_';
     let mut out = String::new();
     let mut rest = text;
@@ -100,9 +114,13 @@ fn words(text: &str, start: f64) -> String {
         let (word, left) = rest.split_at(length);
         match word {
             "log" => out.push_str("ln"),
-            "t" if start != 0.0 => out.push_str(&format!("(t + {})", table::number(start))),
-            // Time since the start of the step.
-            "st" => out.push('t'),
+            "x" | "y" | "z" => out.push_str(&variable(word, Quantity::Length)),
+            "t" if start != 0.0 => {
+                let time = variable("t", Quantity::Time);
+                out.push_str(&format!("({time} + {})", table::number(start)));
+            }
+            // `st` is the time since the start of the step.
+            "t" | "st" => out.push_str(&variable("t", Quantity::Time)),
             word => out.push_str(word),
         }
         rest = left;
@@ -115,7 +133,9 @@ mod tests {
     use super::*;
 
     fn translated(text: &str, start: f64) -> String {
-        Amount::read(text, start).unwrap().toml()
+        Amount::read(text, start, &Units::default())
+            .unwrap()
+            .toml(&Units::default(), Quantity::Length)
     }
 
     #[test]
@@ -141,9 +161,26 @@ mod tests {
             10.0
         );
         assert_eq!(
-            Amount::read("6*t", 0.0).unwrap().over(2.0).toml(),
+            Amount::read("6*t", 0.0, &Units::default())
+                .unwrap()
+                .over(2.0)
+                .toml(&Units::default(), Quantity::Length),
             "{ expression = \"(6*t)/2\" }"
         );
+    }
+
+    #[test]
+    fn expressions_of_other_units_have_the_same_values() {
+        let units = Units::parse("mm,MPa,ms").unwrap();
+        // 3 mm/ms · t + 0.5 · x at 2 ms and x = 4 mm: 8 mm.
+        let amount = Amount::read("3*t + 0.5*x", 0.0, &units).unwrap();
+        let toml = amount.toml(&units, Quantity::Length);
+        assert_eq!(
+            toml,
+            "{ expression = \"1e-3*(3*(t/1e-3) + 0.5*(x/1e-3))\" }"
+        );
+        let constant = Amount::read("5", 0.0, &units).unwrap();
+        assert_eq!(constant.toml(&units, Quantity::Velocity), "5");
     }
 
     #[test]
@@ -156,7 +193,10 @@ mod tests {
             "1/0",
             "value = 1; x = 2;",
         ] {
-            assert!(Amount::read(text, 0.0).is_err(), "{text}");
+            assert!(
+                Amount::read(text, 0.0, &Units::default()).is_err(),
+                "{text}"
+            );
         }
     }
 }

@@ -4,7 +4,7 @@
 //! reads. [`translate`] makes the tables of the deck from it. Entries that have not been read, that have no counterpart or
 //! whose translation differs are [`Remark`]s; nothing is omitted silently.
 //!
-//! The input files have no units: their numbers become numbers in SI units. Volumes of bodies in the plane are area times
+//! The input files have no units; [`Units`] states in which units their numbers are. Volumes of bodies in the plane are area times
 //! thickness, which is one unless the file gives it.
 
 mod entry;
@@ -12,6 +12,7 @@ mod error;
 mod expression;
 mod table;
 mod translate;
+mod units;
 mod xml;
 mod yaml;
 
@@ -25,6 +26,7 @@ use translate::{Code, Source};
 
 pub use entry::Remark;
 pub use error::ImportError;
+pub use units::Units;
 
 /// A deck made from an input file.
 #[derive(Debug)]
@@ -35,26 +37,32 @@ pub struct Imported {
     pub remarks: Vec<Remark>,
 }
 
-/// Imports an input file as a deck in the folder `to`; paths in the deck are relative to it.
+/// Imports an input file, whose numbers are in `units`, as a deck in the folder `to`; paths in the deck are relative to it.
 ///
 /// # Errors
 /// The file cannot be read, is not an input file of PeriLab or Peridigm, or has an error such as a missing block, an
 /// unknown material model or a text in place of a number.
-pub fn import(file: &Path, to: &Path) -> Result<Imported, ImportError> {
+pub fn import(file: &Path, to: &Path, units: &Units) -> Result<Imported, ImportError> {
     let text = fs::read_to_string(file).map_err(|reason| ImportError::Unreadable {
         path: file.into(),
         reason,
     })?;
     let folder = file.parent().unwrap_or(Path::new(""));
     let link = link(folder, to);
-    imported(file, &text, folder, &link).map_err(|fault| ImportError::Invalid {
+    imported(file, &text, folder, &link, units).map_err(|fault| ImportError::Invalid {
         path: file.into(),
         line: fault.line,
         reason: fault.reason,
     })
 }
 
-fn imported(file: &Path, text: &str, folder: &Path, link: &Path) -> Result<Imported, Fault> {
+fn imported(
+    file: &Path,
+    text: &str,
+    folder: &Path,
+    link: &Path,
+    units: &Units,
+) -> Result<Imported, Fault> {
     let tree = if text.trim_start().starts_with('<') {
         xml::read(text)?
     } else {
@@ -64,13 +72,14 @@ fn imported(file: &Path, text: &str, folder: &Path, link: &Path) -> Result<Impor
     let source = Source {
         code,
         root,
+        units: units.clone(),
         folder: folder.into(),
         link: link.into(),
     };
     let tables = translate::tables(&source)?;
     let mut remarks = Vec::new();
     tree.remarks(&mut remarks);
-    let mut deck = head(file, code, &remarks);
+    let mut deck = head(file, code, units, &remarks);
     for table in &tables {
         table.write(&mut deck);
     }
@@ -94,19 +103,18 @@ fn root(tree: &Entry) -> Result<(Code, &Entry), Fault> {
 }
 
 /// The comments at the head of a deck.
-fn head(file: &Path, code: Code, remarks: &[Remark]) -> String {
+fn head(file: &Path, code: Code, units: &Units, remarks: &[Remark]) -> String {
     let name = file.file_name().unwrap_or_default().to_string_lossy();
     let code = match code {
         Code::PeriLab => "PeriLab",
         Code::Peridigm => "Peridigm",
     };
     let mut head = comment(&format!("{name} ({code}), imported by `pericles import`."));
-    head += &comment(
-        "The input file has no units: its numbers are SI units here. If it is in other consistent units, such as mm, t and s,",
-    );
-    head += &comment(
-        "results are in those units too. Each table names the entries from which it comes.",
-    );
+    head += &comment(&match units.names() {
+        Some(names) => format!("The input file has no units; its numbers are in units of {names} and have been converted."),
+        None => "The input file has no units: its numbers are SI units here. Option --units converts other units.".to_owned(),
+    });
+    head += &comment("Each table names the entries from which it comes.");
     for (is_translated, title) in [
         (true, "Translations that differ:"),
         (false, "Not translated:"),

@@ -92,9 +92,9 @@ pub(crate) fn number(number: f64) -> String {
     }
 }
 
-/// Returns a number of four digits.
-pub(crate) fn rounded(value: f64) -> String {
-    number(format!("{value:.3e}").parse().unwrap_or(value))
+/// Returns a number rounded to some digits.
+pub(crate) fn rounded(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits - 1).parse().unwrap_or(value)
 }
 
 pub(crate) fn list(entries: impl IntoIterator<Item = String>) -> String {

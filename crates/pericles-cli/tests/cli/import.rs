@@ -118,16 +118,19 @@ fn pulled(input: &str) -> f64 {
     succeed(folder, "import two.yaml");
     succeed(folder, "check two.toml");
     succeed(folder, "run two.toml --out two --quiet");
-    succeed(folder, "export two --to csv --out csv");
-    let mut files: Vec<_> = fs::read_dir(folder.join("csv"))
-        .unwrap()
-        .map(|file| file.unwrap().path())
-        .collect();
-    files.sort();
-    let last = read_csv(files.last().unwrap()).unwrap();
-    let displacement = last.column("Displacement_x").unwrap();
+    let displacement = &last_fields(folder, "two", ["Displacement_x"])[0];
     assert_eq!((displacement.len(), displacement[0]), (2, 0.0));
     displacement[1]
+}
+
+/// Returns fields at the last output time of a run.
+fn last_fields<const N: usize>(folder: &Path, run: &str, names: [&str; N]) -> [Vec<f64>; N] {
+    succeed(folder, &format!("export {run} --to csv --out {run}-csv"));
+    let files = fs::read_dir(folder.join(format!("{run}-csv"))).unwrap();
+    let mut files: Vec<_> = files.map(|file| file.unwrap().path()).collect();
+    files.sort();
+    let last = read_csv(files.last().unwrap()).unwrap();
+    names.map(|name| last.column(name).unwrap().to_vec())
 }
 
 #[track_caller]
@@ -305,6 +308,56 @@ fn an_imported_bar_breaks_like_the_deck_written_by_hand() {
     succeed(folder, "diff imported hand");
     let history = read_csv(folder.join("imported/history.csv")).unwrap();
     assert!(*history.column("broken_bonds").unwrap().last().unwrap() > 0.0);
+}
+
+#[test]
+fn an_input_file_in_millimetres_and_megapascals_describes_the_same_bar() {
+    let place = with_bar();
+    let folder = place.path();
+    succeed(folder, "import bar.yaml");
+    succeed(folder, "run bar.toml --out metres --quiet");
+    let points = fs::read_to_string(folder.join("points/bar.txt")).unwrap();
+    let points = points.replace("1e-6", "1").replace("e-3", "");
+    fs::write(folder.join("points/mm.txt"), points).unwrap();
+    let mut input = BAR.to_owned();
+    for (metres, millimetres) in [
+        ("bar.txt", "mm.txt"),
+        ("x > 0.017", "x > 17"),
+        ("X: 0.010", "X: 10"),
+        ("Length: 0.002", "Length: 2"),
+        ("72e9", "72e3"),
+        ("2440", "2440e-12"),
+        ("3.01e-3", "3.01"),
+        ("4*t", "4000*t"),
+        ("Value: 0.5,", "Value: 500,"),
+    ] {
+        assert!(input.contains(metres), "{metres}");
+        input = input.replace(metres, millimetres);
+    }
+    fs::write(folder.join("bar.yaml"), input).unwrap();
+    succeed(folder, "import bar.yaml --force --units mm,MPa,s");
+    succeed(folder, "run bar.toml --out millimetres --quiet");
+    let fields = [
+        "Displacement_x",
+        "Displacement_y",
+        "Velocity_x",
+        "Velocity_y",
+        "Damage",
+    ];
+    let [metres, millimetres] =
+        ["metres", "millimetres"].map(|run| last_fields(folder, run, fields));
+    for (name, (a, b)) in fields.iter().zip(metres.iter().zip(&millimetres)) {
+        let size = a.iter().fold(0.0f64, |size, x| size.max(x.abs()));
+        assert!(
+            size > 0.0 && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9 * size),
+            "{name}"
+        );
+    }
+    let (status, message) = fail(folder, "import bar.yaml --units mm,s");
+    assert!(
+        status == 2 && message.contains("such as mm,MPa,s"),
+        "{message}"
+    );
 }
 
 #[test]

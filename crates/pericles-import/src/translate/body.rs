@@ -12,6 +12,7 @@ use super::{Code, Source};
 use crate::entry::{Entry, is_same};
 use crate::error::Fault;
 use crate::table::{self, Table};
+use crate::units::{Quantity, Units};
 
 /// The body of an input file.
 #[derive(Debug)]
@@ -42,7 +43,7 @@ impl Body {
             .unwrap_or("Text File");
         let table = Table::new("[body]").from(entry);
         let mut body = if is_same(kind, "PdQuickGrid") {
-            grid(table, entry)?
+            grid(table, entry, &source.units)?
         } else {
             let file = entry.need(&["Input Mesh File"])?;
             let link = source.link.join(file.text()?);
@@ -55,6 +56,7 @@ impl Body {
                 }),
             );
             let table = table.key("file", table::text(&link.display().to_string()));
+            let table = table.key("unit", table::text(source.units.length_name()));
             if is_same(kind, "Text File") {
                 listed(table, source, file, materials)?
             } else {
@@ -63,11 +65,7 @@ impl Body {
                 Self {
                     dimension,
                     points: Points::Mesh,
-                    tables: vec![
-                        table
-                            .key("unit", "\"m\"")
-                            .key("dimension", dimension.to_string()),
-                    ],
+                    tables: vec![table.key("dimension", dimension.to_string())],
                 }
             }
         };
@@ -80,9 +78,10 @@ impl Body {
                 .tables
                 .into_iter()
                 .map(|table| {
-                    table
-                        .maybe("plane", plane.clone())
-                        .key("thickness", table::number(materials.thickness))
+                    table.maybe("plane", plane.clone()).key(
+                        "thickness",
+                        source.units.number(materials.thickness, Quantity::Length),
+                    )
                 })
                 .collect();
         }
@@ -93,7 +92,7 @@ impl Body {
         }
         if let Some(filters) = entry.find("Bond Filters") {
             for filter in filters.entries()? {
-                let crack = crack(filter, body.dimension)?;
+                let crack = crack(filter, body.dimension, &source.units)?;
                 body.tables.extend(crack);
             }
         }
@@ -161,11 +160,13 @@ fn listed(
             materials.horizon / 3.0
         }
     };
+    let spacing = table::rounded(spacing, 4);
+    let spacing = source.units.number(spacing, Quantity::Length);
     let table = table.key("dimension", dimension.to_string());
     Ok(Body {
         dimension,
         points: Points::Listed(points.ok()),
-        tables: vec![table.key("spacing", table::rounded(spacing))],
+        tables: vec![table.key("spacing", spacing)],
     })
 }
 
@@ -188,7 +189,7 @@ fn columns(content: &[u8]) -> Option<usize> {
 }
 
 /// The body of Peridigm's generator of grids.
-fn grid(table: Table, entry: &Entry) -> Result<Body, Fault> {
+fn grid(table: Table, entry: &Entry, units: &Units) -> Result<Body, Fault> {
     let grid = entry.need(&["TensorProduct3DMeshGenerator"])?;
     if let Some(kind) = grid.find("Type") {
         kind.text()?;
@@ -213,16 +214,19 @@ fn grid(table: Table, entry: &Entry) -> Result<Body, Fault> {
         .iter()
         .all(|dx| (dx - spacing[0]).abs() < 1e-9 * spacing[0]);
     let spacing_key = if is_cubic {
-        table::number(spacing[0])
+        units.number(spacing[0], Quantity::Length)
     } else {
-        table::numbers(&spacing)
+        units.numbers(&spacing, Quantity::Length)
     };
     let table = table
         .from(grid)
         .key("shape", table::text("block"))
-        .key("size", table::numbers(&size));
+        .key("size", units.numbers(&size, Quantity::Length));
     let table = table
-        .key("origin", table::numbers(&numbers("Origin")?))
+        .key(
+            "origin",
+            units.numbers(&numbers("Origin")?, Quantity::Length),
+        )
         .key("spacing", spacing_key);
     Ok(Body {
         dimension: 3,
@@ -234,7 +238,7 @@ fn grid(table: Table, entry: &Entry) -> Result<Body, Fault> {
 }
 
 /// Translates a bond filter to a pre-crack.
-fn crack(filter: &Entry, dimension: usize) -> Result<Option<Table>, Fault> {
+fn crack(filter: &Entry, dimension: usize, units: &Units) -> Result<Option<Table>, Fault> {
     let vector = |name: &str| -> Result<[f64; 3], Fault> {
         let mut vector = [0.0; 3];
         for (value, axis) in vector.iter_mut().zip(["X", "Y", "Z"]) {
@@ -258,7 +262,9 @@ fn crack(filter: &Entry, dimension: usize) -> Result<Option<Table>, Fault> {
         let at = |a: f64, b: f64| [0, 1, 2].map(|c| corner[c] + a * bottom[c] + b * up[c]);
         if dimension == 3 {
             let corners = [at(0.0, 0.0), at(along, 0.0), at(along, side), at(0.0, side)];
-            let corners = corners.iter().map(|corner| table::numbers(corner));
+            let corners = corners
+                .iter()
+                .map(|corner| units.numbers(corner, Quantity::Length));
             return Ok(Some(table.key("polygon", table::list(corners))));
         }
         // The rectangle cuts the plane z = 0 along one of its edges.
@@ -277,15 +283,15 @@ fn crack(filter: &Entry, dimension: usize) -> Result<Option<Table>, Fault> {
                 .refuse("the rectangle does not cut the plane of the body along one of its edges");
             return Ok(None);
         };
-        let segment = [corner, end].map(|point| table::numbers(&point[..2]));
+        let segment = [corner, end].map(|point| units.numbers(&point[..2], Quantity::Length));
         return Ok(Some(table.key("segment", table::list(segment))));
     }
     if is_same(text, "Disk") && dimension == 3 {
         let disc = format!(
             "{{ centre = {}, normal = {}, radius = {} }}",
-            table::numbers(&vector("Center")?),
+            units.numbers(&vector("Center")?, Quantity::Length),
             table::numbers(&vector("Normal")?),
-            table::number(filter.need(&["Radius"])?.positive()?)
+            units.number(filter.need(&["Radius"])?.positive()?, Quantity::Length)
         );
         return Ok(Some(table.key("disc", disc)));
     }

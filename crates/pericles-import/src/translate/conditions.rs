@@ -8,6 +8,7 @@ use crate::entry::{Entry, is_same};
 use crate::error::Fault;
 use crate::expression::Amount;
 use crate::table::{self, Table};
+use crate::units::Quantity;
 
 /// What a condition prescribes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,6 +21,16 @@ enum Kind {
     ForceDensity,
     /// Force on each point.
     Force,
+}
+
+impl Kind {
+    fn quantity(self) -> Quantity {
+        match self {
+            Self::Displacement | Self::InitialDisplacement => Quantity::Length,
+            Self::Velocity | Self::InitialVelocity => Quantity::Velocity,
+            Self::Force | Self::ForceDensity => Quantity::ForceDensity,
+        }
+    }
 }
 
 /// Conditions of Peridigm by `Type`.
@@ -89,7 +100,7 @@ pub(crate) fn tables(
             continue;
         }
         let value = entry.need(&["Value"])?;
-        let amount = match Amount::read(value.text()?, solver.start) {
+        let amount = match Amount::read(value.text()?, solver.start, &source.units) {
             Ok(amount) => amount,
             Err(reason) => {
                 entry.refuse(format!("`{}`: {reason}", value.text()?));
@@ -111,13 +122,14 @@ pub(crate) fn tables(
         } else {
             amount
         };
+        let component = amount.toml(&source.units, kind.quantity());
         // Static schemes ramp constant values up, unless a constant function is given.
         let steady =
             (solver.is_static && amount.is_steady()).then(|| "{ kind = \"constant\" }".to_owned());
         let vector = |fill: &str| {
             table::list((0..body.dimension).map(|c| {
                 if c == axis {
-                    amount.toml()
+                    component.clone()
                 } else {
                     fill.to_owned()
                 }
@@ -150,7 +162,7 @@ pub(crate) fn tables(
                     initial.len() - 1
                 });
                 let known = &mut initial[at];
-                known.components[which][axis] = Some(amount.toml());
+                known.components[which][axis] = Some(component.clone());
                 known.table = std::mem::replace(&mut known.table, Table::new("")).from(entry);
             }
         }

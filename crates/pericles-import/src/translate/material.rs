@@ -7,6 +7,7 @@ use super::{Code, Source, names};
 use crate::entry::{Entry, is_same};
 use crate::error::Fault;
 use crate::table::{self, Table};
+use crate::units::Quantity;
 
 /// The materials of a body.
 #[derive(Debug)]
@@ -92,14 +93,20 @@ impl<'e> Materials<'e> {
         };
         self.horizon = self.horizon.max(horizon.positive()?);
         let mut keys = vec![
-            ("density", table::number(density.positive()?)),
-            ("horizon", table::number(horizon.positive()?)),
+            (
+                "density",
+                source.units.number(density.positive()?, Quantity::Density),
+            ),
+            (
+                "horizon",
+                source.units.number(horizon.positive()?, Quantity::Length),
+            ),
         ];
-        keys.extend(model.constants(source.code, material, self.plane)?);
+        keys.extend(model.constants(source, material, self.plane)?);
         let mut origins = vec![block, material];
         if let Some((name, damage)) = damage {
             if solver.breaks {
-                keys.extend(model.failure(damage)?);
+                keys.extend(model.failure(source, damage)?);
                 origins.push(damage);
             } else {
                 name.refuse("the solver does not evaluate damage models");

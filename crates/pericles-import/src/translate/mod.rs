@@ -13,6 +13,7 @@ use std::path::PathBuf;
 use crate::entry::Entry;
 use crate::error::Fault;
 use crate::table::Table;
+use crate::units::Units;
 
 /// The code that an input file is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,6 +40,7 @@ const TABLES: [(&str, &str); 3] = [
 pub(crate) struct Source<'e> {
     pub(crate) code: Code,
     pub(crate) root: &'e Entry,
+    pub(crate) units: Units,
     /// Folder of the input file, to which the paths in it are relative.
     pub(crate) folder: PathBuf,
     /// The same folder, relative to the deck.

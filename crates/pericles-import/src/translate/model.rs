@@ -1,9 +1,10 @@
 //! Material and damage models.
 
-use super::Code;
+use super::{Code, Source};
 use crate::entry::{Entry, is_same};
 use crate::error::Fault;
 use crate::table;
+use crate::units::Quantity;
 
 /// Constitutive laws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -128,7 +129,7 @@ impl Model {
     /// Returns elastic constants and yield stress.
     pub(super) fn constants(
         self,
-        code: Code,
+        source: &Source<'_>,
         material: &Entry,
         plane: Option<Plane>,
     ) -> Result<Keys, Fault> {
@@ -150,40 +151,44 @@ impl Model {
             return Err(material.fault("there are no elastic constants"));
         }
         if self.law == Law::BondBased {
-            given = vec![bond_based(code, material, plane, &given)];
+            given = vec![bond_based(source.code, material, plane, &given)];
         }
-        let mut keys: Keys = given
-            .into_iter()
-            .map(|(key, value)| (key, table::number(value)))
-            .collect();
+        let modulus = |value| source.units.number(value, Quantity::Stress);
+        let mut keys: Keys = Vec::new();
+        for (key, value) in given {
+            let is_modulus = key != "poisson_ratio";
+            keys.push((
+                key,
+                if is_modulus {
+                    modulus(value)
+                } else {
+                    table::number(value)
+                },
+            ));
+        }
         if self.is_plastic {
             keys.push((
                 "yield_stress",
-                table::number(material.need(&["Yield Stress"])?.positive()?),
+                modulus(material.need(&["Yield Stress"])?.positive()?),
             ));
             let hardening = material.number_of(&["Hardening Modulus"])?;
-            keys.extend(hardening.map(|modulus| ("hardening", table::number(modulus))));
+            keys.extend(hardening.map(|value| ("hardening", modulus(value))));
         }
         Ok(keys)
     }
 
     /// Returns the failure criterion of a damage model.
-    pub(super) fn failure(self, damage: &Entry) -> Result<Keys, Fault> {
+    pub(super) fn failure(self, source: &Source<'_>, damage: &Entry) -> Result<Keys, Fault> {
         let kind = damage.need(&["Damage Model"])?;
         let name = kind.text()?;
-        let value = |keys: &[&str]| {
-            damage
-                .need(keys)
-                .and_then(Entry::positive)
-                .map(table::number)
-        };
+        let value = |keys: &[&str]| damage.need(keys).and_then(Entry::positive);
         Ok(if is_same(name, "Critical Stretch") {
-            vec![(
-                "critical_stretch",
-                value(&["Critical Stretch", "Critical Value"])?,
-            )]
+            let stretch = value(&["Critical Stretch", "Critical Value"])?;
+            vec![("critical_stretch", table::number(stretch))]
         } else if is_same(name, "Critical Energy") {
-            let energy = ("fracture_energy", value(&["Critical Value"])?);
+            let energy = value(&["Critical Value"])?;
+            let energy = source.units.number(energy, Quantity::FractureEnergy);
+            let energy = ("fracture_energy", energy);
             if self.law == Law::BondBased {
                 kind.differ("bonds of bond-based materials break at the critical stretch of this fracture energy");
                 vec![energy]

@@ -5,6 +5,7 @@ use super::{Code, Source};
 use crate::entry::{Entry, is_same};
 use crate::error::Fault;
 use crate::table::{self, Table};
+use crate::units::Quantity;
 
 /// Fields of Pericles by names of output variables.
 const FIELDS: [(&str, &str); 15] = [
@@ -122,7 +123,7 @@ fn probes(source: &Source<'_>, body: &Body) -> Result<Vec<Table>, Fault> {
             .iter()
             .map(|axis| entry.need(&[axis])?.number())
             .collect();
-        let at = table::numbers(&at?);
+        let at = source.units.numbers(&at?, Quantity::Length);
         if let Some(variable) = entry.find("Variable") {
             variable.text()?;
         }

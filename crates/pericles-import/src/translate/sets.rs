@@ -6,6 +6,7 @@ use std::fs;
 use super::{Code, Source, names};
 use crate::entry::{Entry, is_same};
 use crate::error::Fault;
+use crate::expression::in_si_variables;
 use crate::table::{self, Table};
 
 /// The node sets of an input file, and those that the deck uses.
@@ -162,7 +163,8 @@ impl<'e> Sets<'e> {
 fn points(source: &Source<'_>, entry: &Entry) -> Result<Option<Points>, Fault> {
     let text = entry.text()?;
     if text.contains(['<', '>']) {
-        return Ok(Some(Points::Where(text.to_owned())));
+        let condition = in_si_variables(text, 0.0, &source.units);
+        return Ok(Some(Points::Where(condition)));
     }
     let is_list = text
         .chars()

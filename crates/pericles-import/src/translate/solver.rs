@@ -4,6 +4,7 @@ use super::{Code, Source};
 use crate::entry::Entry;
 use crate::error::Fault;
 use crate::table::{self, Table};
+use crate::units::{Quantity, Units};
 
 /// Schemes by the names of their groups.
 const SCHEMES: [(&str, Scheme); 8] = [
@@ -29,7 +30,7 @@ enum Scheme {
 pub(crate) struct Solver<'e> {
     pub(crate) table: Table,
     pub(crate) is_static: bool,
-    /// Time at the start; that of the deck is zero.
+    /// Time at the start, in units of the input file; that of the deck is zero.
     pub(crate) start: f64,
     /// Number of the step, of a file with several.
     step: Option<&'e str>,
@@ -60,9 +61,9 @@ impl<'e> Solver<'e> {
         let option = |keys: &[&str]| group.find_any(keys).or_else(|| solver.find_any(keys));
         let table = Table::new("[time]").from(solver).from(group);
         let table = match scheme {
-            Scheme::Verlet => explicit(table, end, &option)?,
-            Scheme::Static => statics(table, end, &option)?,
-            Scheme::Newmark => newmark(table, end, &option)?,
+            Scheme::Verlet => explicit(table, end, &option, &source.units)?,
+            Scheme::Static => statics(table, end, &option, &source.units)?,
+            Scheme::Newmark => newmark(table, end, &option, &source.units)?,
         };
         let breaks = match source.code {
             Code::PeriLab => solver.is_set("Damage Models")?,
@@ -119,8 +120,13 @@ fn first_step(root: &Entry) -> Result<(&Entry, Option<&str>), Fault> {
 
 type Options<'o, 'e> = dyn Fn(&[&str]) -> Option<&'e Entry> + 'o;
 
-fn explicit(table: Table, end: f64, option: &Options<'_, '_>) -> Result<Table, Fault> {
-    let table = table.key("end", table::number(end));
+fn explicit(
+    table: Table,
+    end: f64,
+    option: &Options<'_, '_>,
+    units: &Units,
+) -> Result<Table, Fault> {
+    let table = table.key("end", units.number(end, Quantity::Time));
     let safety = option(&["Safety Factor"]);
     let step = match (option(&["Fixed dt"]), option(&["Number of Steps"])) {
         (Some(step), _) => Some(step.positive()?),
@@ -132,7 +138,7 @@ fn explicit(table: Table, end: f64, option: &Options<'_, '_>) -> Result<Table, F
             if let Some(safety) = safety {
                 safety.refuse("without effect: the time step is given");
             }
-            Ok(table.key("dt", table::number(step)))
+            Ok(table.key("dt", units.number(step, Quantity::Time)))
         }
         (None, Some(safety)) => Ok(match safety.positive()? {
             factor if factor <= 1.0 => table.key("safety", table::number(factor)),
@@ -145,7 +151,12 @@ fn explicit(table: Table, end: f64, option: &Options<'_, '_>) -> Result<Table, F
     }
 }
 
-fn statics(table: Table, end: f64, option: &Options<'_, '_>) -> Result<Table, Fault> {
+fn statics(
+    table: Table,
+    end: f64,
+    option: &Options<'_, '_>,
+    units: &Units,
+) -> Result<Table, Fault> {
     let steps = match (
         option(&["Number of Load Steps", "Number of Steps"]),
         option(&["Fixed dt"]),
@@ -167,11 +178,16 @@ fn statics(table: Table, end: f64, option: &Options<'_, '_>) -> Result<Table, Fa
     }
     let table = table
         .key("scheme", "\"static\"")
-        .key("end", table::number(end));
+        .key("end", units.number(end, Quantity::Time));
     Ok(table.key("load_steps", steps.to_string()))
 }
 
-fn newmark(table: Table, end: f64, option: &Options<'_, '_>) -> Result<Table, Fault> {
+fn newmark(
+    table: Table,
+    end: f64,
+    option: &Options<'_, '_>,
+    units: &Units,
+) -> Result<Table, Fault> {
     let table = table
         .key("scheme", "\"newmark\"")
         .key("solver", "\"newton-krylov\"");
@@ -184,8 +200,8 @@ fn newmark(table: Table, end: f64, option: &Options<'_, '_>) -> Result<Table, Fa
             .map(|entry| entry.number().map(table::number))
             .transpose()
     };
-    let table = table.key("end", table::number(end));
-    let table = table.maybe("dt", step.map(table::number));
+    let table = table.key("end", units.number(end, Quantity::Time));
+    let table = table.maybe("dt", step.map(|step| units.number(step, Quantity::Time)));
     Ok(table
         .maybe("beta", parameter("Beta")?)
         .maybe("gamma", parameter("Gamma")?))
