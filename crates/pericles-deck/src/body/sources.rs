@@ -31,11 +31,13 @@ pub struct PointsFile {
     #[serde(default)]
     #[deck(with = unit_of, check = check_unit)]
     pub unit: Option<f64>,
-    /// Listed points: their approximate distance.
+    /// Listed points: their approximate distance; "auto" takes that of their mean volume, (volume/thickness)^(1/dimension);
+    /// `material.horizon` must then be a length.
     ///
     /// In m.
-    #[deck(quantity = Length, range = POSITIVE)]
-    pub spacing: f64,
+    #[serde(default)]
+    #[deck(quantity = Length, range = POSITIVE, none = "auto", default)]
+    pub spacing: Option<f64>,
     /// Points, mesh: dimension of the body: 1, 2 or 3 for points, 2 or 3 for meshes.
     #[deck(flatten, key = "dimension", with = dimension_of_points)]
     pub dimension: usize,

@@ -94,15 +94,16 @@ impl Assembler<'_> {
         let cloud = listed
             .cloud(file.dimension, solid.shape.section())
             .map_err(|error| at("body.file", error))?;
-        let (given, found) = (file.spacing, cloud.spacing());
+        let found = cloud.spacing();
         // Without partial volumes the size of the cells has no influence.
         let is_used = solid.material.volume_correction() != VolumeCorrection::None;
-        if !is_used || (1.0 / OFF..=OFF).contains(&(found / given)) {
+        let is_far = |given: &f64| is_used && !(1.0 / OFF..=OFF).contains(&(found / given));
+        let Some(given) = file.spacing.filter(is_far) else {
             self.check_listed(solid, &cloud, resources)?;
             self.warnings
                 .extend(self.check_listed_points(&listed, &cloud));
             return Ok(cloud);
-        }
+        };
         let section = ["area", "thickness"].get(file.dimension - 1);
         let section = section.map(|key| format!("; `{key}` is part of the volumes"));
         let fault = Fault::other(

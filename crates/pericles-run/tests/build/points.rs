@@ -301,6 +301,22 @@ fn listed_points_have_the_unit_of_length_of_the_deck() {
         assert!((0..2).all(|c| (a[c] - b[c]).abs() < 1e-15), "{a:?} {b:?}");
     }
     assert!((millimetres.cloud.spacing() / 1e-3 - 1.0).abs() < 1e-12);
+    // Without `spacing`, the size of the mean cell counts.
+    let automatic = LISTED.replace("spacing = \"1 mm\"\n", "");
+    let error = Deck::parse(&automatic, "plate.toml", &[]).unwrap_err();
+    let error = error.to_string();
+    assert!(error.contains("before its file is read"), "{error}");
+    assert!(error.contains("`depth` instead"), "{error}");
+    let automatic = automatic.replace("cells = 1", "depth = \"1 mm\"");
+    let automatic = automatic.replace("horizon_ratio = 3", "horizon = \"3 mm\"");
+    let automatic = built(&automatic, 1.0);
+    assert_eq!(automatic.cloud.spacing(), metres.cloud.spacing());
+    let edge = automatic
+        .sets
+        .iter()
+        .find(|(name, _)| name == "edge")
+        .unwrap();
+    assert_eq!(edge.1.len(), 6);
 }
 
 #[test]
