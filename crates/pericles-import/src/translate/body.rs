@@ -143,30 +143,14 @@ fn listed(
     let points = content.and_then(|content| {
         parse_points(Path::new(name), &content, dimension).map_err(|error| error.to_string())
     });
-    let spacing = match &points {
-        Ok(points) => {
-            let section = if dimension == 2 {
-                materials.thickness
-            } else {
-                1.0
-            };
-            let mean = points.volumes.iter().sum::<f64>() / points.volumes.len() as f64;
-            (mean / section).powf(1.0 / dimension as f64)
-        }
-        Err(reason) => {
-            file.differ(format!(
-                "the points cannot be read, and `spacing` is a third of the horizon: {reason}"
-            ));
-            materials.horizon / 3.0
-        }
-    };
-    let spacing = table::rounded(spacing, 4);
-    let spacing = source.units.number(spacing, Quantity::Length);
+    if let Err(reason) = &points {
+        file.differ(format!("the points cannot be read: {reason}"));
+    }
     let table = table.key("dimension", dimension.to_string());
     Ok(Body {
         dimension,
         points: Points::Listed(points.ok()),
-        tables: vec![table.key("spacing", spacing)],
+        tables: vec![table],
     })
 }
 

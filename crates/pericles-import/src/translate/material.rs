@@ -18,8 +18,6 @@ pub(crate) struct Materials<'e> {
     pub(super) plane: Option<Plane>,
     /// Thickness, for a body in the plane.
     pub(super) thickness: f64,
-    /// The largest horizon.
-    pub(super) horizon: f64,
 }
 
 /// A material of one or more blocks.
@@ -46,7 +44,6 @@ impl<'e> Materials<'e> {
             all: Vec::new(),
             plane: None,
             thickness: 1.0,
-            horizon: 0.0,
         };
         for block in blocks.entries()? {
             let name = block.need(&["Material Model", "Material"])?;
@@ -91,7 +88,6 @@ impl<'e> Materials<'e> {
                 horizon.map_or_else(|| block.need(&["Horizon"]), Ok)?
             }
         };
-        self.horizon = self.horizon.max(horizon.positive()?);
         let mut keys = vec![
             (
                 "density",
