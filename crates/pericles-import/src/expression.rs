@@ -140,7 +140,7 @@ mod tests {
 
     #[test]
     fn expressions_keep_their_values() {
-        assert_eq!(translated("7.0e+5", 0.0), "7e5");
+        assert_eq!(translated("7.0e+5", 0.0), "700000");
         assert_eq!(
             translated("value = x*10;", 0.0),
             "{ expression = \"x*10\" }"
@@ -177,7 +177,7 @@ mod tests {
         let toml = amount.toml(&units, Quantity::Length);
         assert_eq!(
             toml,
-            "{ expression = \"1e-3*(3*(t/1e-3) + 0.5*(x/1e-3))\" }"
+            "{ expression = \"0.001*(3*(t/0.001) + 0.5*(x/0.001))\" }"
         );
         let constant = Amount::read("5", 0.0, &units).unwrap();
         assert_eq!(constant.toml(&units, Quantity::Velocity), "5");

@@ -1,4 +1,4 @@
-//! Import of input files of PeriLab (YAML) and Peridigm (YAML, XML) as decks of Pericles.
+//! Import of input files of PeriLab (YAML) and Peridigm (its own text format, YAML, XML) as decks of Pericles.
 //!
 //! [`import`] reads the file to a tree of entries ([`entry`](mod@entry)), which records the entries that the translation
 //! reads. [`translate`] makes the tables of the deck from it. Entries that have not been read, that have no counterpart or
@@ -10,6 +10,7 @@
 mod entry;
 mod error;
 mod expression;
+mod plain;
 mod table;
 mod translate;
 mod units;
@@ -65,6 +66,8 @@ fn imported(
 ) -> Result<Imported, Fault> {
     let tree = if text.trim_start().starts_with('<') {
         xml::read(text)?
+    } else if plain::is_plain(text) {
+        plain::read(text)?
     } else {
         yaml::read(text)?
     };
@@ -80,6 +83,8 @@ fn imported(
     let mut remarks = Vec::new();
     tree.remarks(&mut remarks);
     let mut deck = head(file, code, units, &remarks);
+    let title = file.file_stem().unwrap_or_default().to_string_lossy();
+    deck += &format!("\ntitle = {}\n", table::text(&title));
     for table in &tables {
         table.write(&mut deck);
     }
@@ -91,12 +96,12 @@ fn root(tree: &Entry) -> Result<(Code, &Entry), Fault> {
     if let Some(root) = tree.find("PeriLab") {
         return Ok((Code::PeriLab, root));
     }
-    // XML files have no key of their own; neither have parts of YAML files.
+    // XML files and text files have no key of their own.
     let root = tree.find("Peridigm").unwrap_or(tree);
     if root.find("Blocks").is_none() && root.find("Discretization").is_none() {
         return Err(Fault {
             line: tree.line(),
-            reason: "this is no input file of PeriLab (a group `PeriLab`) or Peridigm (a group `Peridigm`, or an XML parameter list) with `Blocks` and `Discretization`".into(),
+            reason: "this is no input file of PeriLab (a group `PeriLab`) or Peridigm (a group `Peridigm`, an XML parameter list, or text) with `Blocks` and `Discretization`".into(),
         });
     }
     Ok((Code::Peridigm, root))

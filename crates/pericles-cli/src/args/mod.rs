@@ -75,7 +75,7 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// List the example decks, or copy one to start from
     New(NewArgs),
-    /// Import an input file of PeriLab (YAML) or Peridigm (YAML, XML) as a deck
+    /// Import an input file of PeriLab (YAML) or Peridigm (text, YAML, XML) as a deck
     #[command(after_help = import::NOTES)]
     Import(ImportArgs),
     /// Run a deck

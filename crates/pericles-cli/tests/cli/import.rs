@@ -361,7 +361,7 @@ fn an_input_file_in_millimetres_and_megapascals_describes_the_same_bar() {
 }
 
 #[test]
-fn the_parameter_lists_of_both_formats_of_peridigm_give_the_same_deck() {
+fn the_parameter_lists_of_all_formats_of_peridigm_give_the_same_deck() {
     let place = tempfile::tempdir().unwrap();
     let folder = place.path();
     write_points(folder);
@@ -386,6 +386,7 @@ fn the_parameter_lists_of_both_formats_of_peridigm_give_the_same_deck() {
       Fixed dt: 1e-6
 ";
     let mut xml = String::from("<ParameterList>\n");
+    let mut plain = String::from("# Units are SI\n");
     let mut open = 0;
     for line in yaml.lines().skip(1) {
         let depth = (line.len() - line.trim_start().len()) / 2 - 1;
@@ -394,6 +395,16 @@ fn the_parameter_lists_of_both_formats_of_peridigm_give_the_same_deck() {
             open -= 1;
         }
         let (key, value) = line.trim().split_once(':').unwrap();
+        let quote = if value.trim().parse::<f64>().is_err() && !value.is_empty() {
+            "\""
+        } else {
+            ""
+        };
+        plain += &format!(
+            "{}{key} {quote}{}{quote}\n",
+            "  ".repeat(depth),
+            value.trim()
+        );
         if value.is_empty() {
             xml += &format!("<ParameterList name=\"{key}\">\n");
             open += 1;
@@ -407,6 +418,7 @@ fn the_parameter_lists_of_both_formats_of_peridigm_give_the_same_deck() {
     xml += &"</ParameterList>\n".repeat(open + 1);
     fs::write(folder.join("glass.yaml"), yaml).unwrap();
     fs::write(folder.join("glass.xml"), xml).unwrap();
+    fs::write(folder.join("glass.peridigm"), plain).unwrap();
     let keys = |file: &str| {
         let deck = text(&succeed(folder, &format!("import {file} --out -")).stdout);
         let keys = deck
@@ -418,6 +430,7 @@ fn the_parameter_lists_of_both_formats_of_peridigm_give_the_same_deck() {
     let deck = keys("glass.yaml");
     assert!(deck.contains("bulk_modulus = 4e10"), "{deck}");
     assert_eq!(deck, keys("glass.xml"));
+    assert_eq!(deck, keys("glass.peridigm"));
 }
 
 #[test]

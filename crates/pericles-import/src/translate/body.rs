@@ -61,7 +61,7 @@ impl Body {
                 listed(table, source, file, materials)?
             } else {
                 let dimension = if materials.plane.is_some() { 2 } else { 3 };
-                file.differ("the points are the centres of the elements; node sets of the file become sets of the elements at their nodes");
+                file.differ("node sets of the file become the elements at their nodes; compare the sets with `pericles check`");
                 Self {
                     dimension,
                     points: Points::Mesh,
