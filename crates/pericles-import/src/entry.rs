@@ -76,9 +76,13 @@ impl Entry {
 
     /// Returns an error about this entry.
     pub(crate) fn fault(&self, reason: impl Into<String>) -> Fault {
+        let reason = reason.into();
         Fault {
             line: self.line,
-            reason: format!("{}: {}", self.path, reason.into()),
+            reason: match self.path.as_str() {
+                "" => reason,
+                path => format!("{path}: {reason}"),
+            },
         }
     }
 

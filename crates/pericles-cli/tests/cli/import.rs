@@ -526,6 +526,11 @@ fn wrong_input_files_are_rejected_with_file_and_line() {
             "`Wrong` is not a node set; defined are: Left, Right",
         ),
         (
+            changed("Left: 1:12", "Left: nodes.txt"),
+            line("Left: 1:12"),
+            "the file cannot be read",
+        ),
+        (
             changed("Left: 1:12", "Left: 0:12"),
             line("Left: 1:12"),
             "points are counted from 1",

@@ -31,6 +31,8 @@ enum Points {
     Listed(Vec<usize>),
     /// A condition on the coordinates.
     Where(String),
+    /// None: the file cannot be read, for this reason.
+    Missing(String),
 }
 
 impl<'e> Sets<'e> {
@@ -45,14 +47,11 @@ impl<'e> Sets<'e> {
         let entries = listed.map_or(Ok(&[][..]), Entry::entries)?;
         let mut known = Vec::new();
         for entry in entries.iter().filter(|entry| !entry.is_group()) {
-            if let Some(points) = points(source, entry)? {
-                known.push(Named { entry, points });
-            }
+            let points = points(source, entry)?;
+            known.push(Named { entry, points });
         }
-        let zero = known.iter().find(|set| match &set.points {
-            Points::Listed(members) => members.first() == Some(&0),
-            Points::Where(_) => false,
-        });
+        let contains_zero = |set: &&Named<'_>| matches!(&set.points, Points::Listed(members) if members.first() == Some(&0));
+        let zero = known.iter().find(contains_zero);
         let zero = zero.map(|set| set.entry);
         if let (Some(entry), Code::PeriLab) = (zero, source.code) {
             return Err(entry.fault("the point number 0; points are counted from 1"));
@@ -64,7 +63,7 @@ impl<'e> Sets<'e> {
                     "points are counted from 0, because one of the sets contains the point 0",
                 ),
                 (Points::Listed(members), None) => members.iter_mut().for_each(|k| *k -= 1),
-                (Points::Where(_), _) => {}
+                (Points::Where(_) | Points::Missing(_), _) => {}
             }
         }
         Ok(Self {
@@ -93,15 +92,26 @@ impl<'e> Sets<'e> {
         }
         let table = Table::new(table::heading("sets", text));
         let table = sets.iter().fold(table, |table, set| table.from(set.entry));
-        let table = match (&sets[..], self.members(text)) {
-            ([one], None) => match &one.points {
-                Points::Where(condition) => table.key("where", table::text(condition)),
-                Points::Listed(_) => table,
-            },
-            (_, Some(members)) => table.key("points", ranges(&members)),
-            (_, None) => {
-                return Err(reference
-                    .fault("a union with a set that is given by a condition is not supported"));
+        let table = match (self.members(text), &sets[..]) {
+            (Some(members), _) => table.key("points", ranges(&members)),
+            (
+                None,
+                [
+                    Named {
+                        points: Points::Where(condition),
+                        ..
+                    },
+                ],
+            ) => table.key("where", table::text(condition)),
+            (None, sets) => {
+                let missing = sets.iter().find_map(|set| match &set.points {
+                    Points::Missing(reason) => Some(set.entry.fault(reason)),
+                    _ => None,
+                });
+                return Err(missing.unwrap_or_else(|| {
+                    reference
+                        .fault("a union with a set that is given by a condition is not supported")
+                }));
             }
         };
         self.add(text, table);
@@ -118,7 +128,7 @@ impl<'e> Sets<'e> {
     pub(super) fn members(&self, name: &str) -> Option<Vec<usize>> {
         let lists = self.parts(name).into_iter().map(|set| match &set.points {
             Points::Listed(members) => Some(members),
-            Points::Where(_) => None,
+            Points::Where(_) | Points::Missing(_) => None,
         });
         let lists: Option<Vec<_>> = lists.collect();
         let mut members: Vec<usize> = lists?.into_iter().flatten().copied().collect();
@@ -159,12 +169,12 @@ impl<'e> Sets<'e> {
     }
 }
 
-/// Returns the points of a set, with numbers as given; `None` for a file that cannot be read.
-fn points(source: &Source<'_>, entry: &Entry) -> Result<Option<Points>, Fault> {
+/// Returns the points of a set, with numbers as given.
+fn points(source: &Source<'_>, entry: &Entry) -> Result<Points, Fault> {
     let text = entry.text()?;
     if text.contains(['<', '>']) {
         let condition = in_si_variables(text, 0.0, &source.units);
-        return Ok(Some(Points::Where(condition)));
+        return Ok(Points::Where(condition));
     }
     let is_list = text
         .chars()
@@ -179,8 +189,9 @@ fn points(source: &Source<'_>, entry: &Entry) -> Result<Option<Points>, Fault> {
                 &file
             }
             Err(reason) => {
-                entry.refuse(format!("the file cannot be read: {reason}"));
-                return Ok(None);
+                let reason = format!("the file cannot be read: {reason}");
+                entry.refuse(&*reason);
+                return Ok(Points::Missing(reason));
             }
         }
     };
@@ -202,7 +213,7 @@ fn points(source: &Source<'_>, entry: &Entry) -> Result<Option<Points>, Fault> {
     }
     members.sort_unstable();
     members.dedup();
-    Ok(Some(Points::Listed(members)))
+    Ok(Points::Listed(members))
 }
 
 /// Returns a list of points with ranges, such as `[0, "3-7"]`.
