@@ -180,6 +180,14 @@ fn imported_materials_have_the_stiffness_of_the_other_codes() {
         pulled(&peridigm("Material Model: Elastic Bond Based")),
         force / (18.0 * bulk / (PI * horizon.powi(4)) * volume),
     );
+    // In the plane 12 K/(π h δ³), with the thickness h = 0.5 that the volumes contain.
+    for plane in ["Plane Stress", "Plane Strain"] {
+        let model = format!("Material Model: Elastic Bond Based, {plane}: true, Height: 0.5");
+        assert_close(
+            pulled(&peridigm(&model)),
+            force / (12.0 * bulk / (PI * 0.5 * horizon.powi(3)) * volume),
+        );
+    }
 }
 
 /// A notched bar in the plane with two blocks, in PeriLab's format.
