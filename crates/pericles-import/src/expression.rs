@@ -5,6 +5,7 @@ use serde::Deserialize;
 use serde::de::IntoDeserializer;
 use serde::de::value::Error;
 
+use crate::entry::DEEPEST;
 use crate::table;
 use crate::units::{Quantity, Units};
 
@@ -37,7 +38,7 @@ impl Amount {
         for sign in ['*', '/', '+', '-', '^'] {
             plain = plain.replace(&format!(".{sign}"), &sign.to_string());
         }
-        let translated = in_si_variables(&plain, start, units);
+        let translated = in_si_variables(&without_pairs(&plain, 0), start, units);
         let deserializer = translated.as_str().into_deserializer();
         let parsed = Expression::deserialize(deserializer);
         let expression =
@@ -95,13 +96,67 @@ impl Amount {
     }
 }
 
+/// Replaces functions of two arguments by expressions of functions of one argument.
+fn without_pairs(text: &str, depth: usize) -> String {
+    let mut out = String::new();
+    let mut rest = text;
+    while let Some(open) = rest.find('(').filter(|_| depth < DEEPEST) {
+        let Some((arguments, length)) = arguments(&rest[open + 1..]) else {
+            break;
+        };
+        let (head, tail) = (&rest[..open], &rest[open + 1 + length..]);
+        let name = &head[head.trim_end_matches(is_letter).len()..];
+        let arguments: Vec<String> = arguments
+            .into_iter()
+            .map(|argument| without_pairs(argument, depth + 1))
+            .collect();
+        let pair = match (name, &arguments[..]) {
+            // The angle between −π and π.
+            ("atan" | "atan2", [y, x]) => {
+                format!("(acos(({x})/sqrt(({x})*({x})+({y})*({y})))*(2*step({y})-1))")
+            }
+            ("pow", [base, exponent]) => format!("(({base})^({exponent}))"),
+            ("max", [a, b]) => format!("((({a})+({b})+abs(({a})-({b})))/2)"),
+            ("min", [a, b]) => format!("((({a})+({b})-abs(({a})-({b})))/2)"),
+            _ => format!("{name}({})", arguments.join(", ")),
+        };
+        out += &head[..head.len() - name.len()];
+        out += &pair;
+        rest = tail;
+    }
+    out + rest
+}
+
+/// Returns the arguments, separated by commas, up to the closing parenthesis of a text, and the length with it.
+fn arguments(text: &str) -> Option<(Vec<&str>, usize)> {
+    let (mut arguments, mut depth, mut begin) = (Vec::new(), 0, 0);
+    for (k, c) in text.char_indices() {
+        match c {
+            '(' => depth += 1,
+            ')' if depth > 0 => depth -= 1,
+            ',' | ')' if depth == 0 => {
+                arguments.push(&text[begin..k]);
+                begin = k + 1;
+                if c == ')' {
+                    return Some((arguments, begin));
+                }
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+fn is_letter(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
 /// Replaces names of functions and variables: natural logarithm, time since the start, coordinates and time in SI units.
 pub(crate) fn in_si_variables(text: &str, start: f64, units: &Units) -> String {
     let variable = |name: &str, quantity| match units.factor(quantity) {
         1.0 => name.to_owned(),
         factor => format!("({name}/{})", table::number(table::rounded(factor, 12))),
     };
-    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
     let mut out = String::new();
     let mut rest = text;
     while let Some(c) = rest.chars().next() {
@@ -184,10 +239,39 @@ mod tests {
     }
 
     #[test]
+    fn functions_of_two_arguments_keep_their_values() {
+        let value = |text: &str, [x, y]: [f64; 2]| {
+            let text = in_si_variables(&without_pairs(text, 0), 0.0, &Units::default());
+            let parsed: Result<Expression, Error> =
+                Expression::deserialize(text.as_str().into_deserializer());
+            parsed.unwrap().value([x, y, 0.0], 0.0)
+        };
+        for place @ [x, y] in [
+            [3.0, 4.0],
+            [-3.0, 4.0],
+            [-3.0, -4.0],
+            [-1.0, 0.0],
+            [0.0, -2.0f64],
+        ] {
+            let angle = y.atan2(x);
+            let close = |a: f64, b: f64| assert!((a - b).abs() < 1e-14, "{place:?}: {a} {b}");
+            close(value("atan2(y, x)", place), angle);
+            close(value("2*cos(atan(y,x))", place), 2.0 * angle.cos());
+            close(
+                value("max(x, min(y, 1)) + pow(x, 2)", place),
+                x.max(y.min(1.0)) + x * x,
+            );
+            close(value("sin((x+y)*2)", place), ((x + y) * 2.0).sin());
+        }
+    }
+
+    #[test]
     fn conditionals_and_unknown_functions_have_no_translation() {
         for text in [
             "if t>2 0 else 20 end",
-            "cos(atan2(y,x))",
+            "atan2(y)",
+            "atan2(y, x, t)",
+            "hypot(x, y)",
             "",
             "nan",
             "1/0",

@@ -1,7 +1,7 @@
 //! Import of input files of PeriLab (YAML) and Peridigm (its own text format, YAML, XML) as decks of Pericles.
 //!
-//! [`import`] reads the file to a tree of entries ([`entry`](mod@entry)), which records the entries that the translation
-//! reads. [`translate`] makes the tables of the deck from it. Entries that have not been read, that have no counterpart or
+//! [`import`] reads the file to a tree of entries (module `entry`), which records the entries that the translation
+//! reads. The module `translate` makes the tables of the deck from it. Entries that have not been read, that have no counterpart or
 //! whose translation differs are [`Remark`]s; nothing is omitted silently.
 //!
 //! The input files have no units; [`Units`] states in which units their numbers are. Volumes of bodies in the plane are area times
