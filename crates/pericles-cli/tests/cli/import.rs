@@ -494,6 +494,25 @@ fn every_entry_without_translation_is_reported_with_its_line() {
 }
 
 #[test]
+fn only_initial_conditions_of_overlapping_sets_are_reported_as_different() {
+    let place = with_bar();
+    let folder = place.path();
+    let reported = |second: &str| {
+        let input = BAR.replace("Right: x > 0.017", &format!("Right: {second}"));
+        let input = input.replace(
+            "  Solver:",
+            "    other: {Variable: Velocity, Node Set: Right, Coordinate: x, Value: 1, Type: Initial}\n  Solver:",
+        );
+        fs::write(folder.join("bar.yaml"), input).unwrap();
+        let errors = text(&succeed(folder, "import bar.yaml --force").stderr);
+        errors.contains("where sets of initial conditions overlap")
+    };
+    assert!(!reported("13:20"));
+    assert!(reported("12:20"));
+    assert!(reported("x > 0.017"));
+}
+
+#[test]
 fn wrong_input_files_are_rejected_with_file_and_line() {
     let place = with_bar();
     let folder = place.path();

@@ -151,7 +151,8 @@ pub(crate) fn tables(
                 let which = usize::from(kind == Kind::InitialVelocity);
                 let at = initial.iter().position(|known| known.set == set);
                 let at = at.unwrap_or_else(|| {
-                    if !initial.is_empty() {
+                    let overlaps = |known: &Initial| sets.may_overlap(&known.set, &set);
+                    if initial.iter().any(overlaps) {
                         entry.differ("where sets of initial conditions overlap, the last table of the deck counts for all components");
                     }
                     initial.push(Initial {

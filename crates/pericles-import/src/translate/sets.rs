@@ -137,6 +137,16 @@ impl<'e> Sets<'e> {
         Some(members)
     }
 
+    /// Returns whether two sets have common points, or may have some.
+    pub(super) fn may_overlap(&self, a: &str, b: &str) -> bool {
+        match (self.members(a), self.members(b)) {
+            (Some(a), Some(b)) if !a.is_empty() && !b.is_empty() => {
+                b.iter().any(|k| a.binary_search(k).is_ok())
+            }
+            _ => true,
+        }
+    }
+
     /// Adds the set of a block, whose name ends with its number.
     pub(super) fn use_block(&self, name: &str, origin: &Entry) {
         // A mesh has sets for its blocks.
