@@ -44,6 +44,16 @@ pub(crate) enum CliError {
         #[help]
         help: &'static str,
     },
+    /// An input file of another code cannot be imported.
+    #[error(transparent)]
+    Import(#[from] pericles_import::ImportError),
+    /// A deck would be overwritten.
+    #[error("{} already exists", path.display())]
+    #[diagnostic(help("choose another name with --out, or use --force to replace the file"))]
+    DeckExists {
+        /// The deck.
+        path: PathBuf,
+    },
     /// A file would be overwritten.
     #[error("{} already exists", path.display())]
     #[diagnostic(help("choose another name, or move the file"))]
@@ -192,6 +202,7 @@ impl CliError {
         match self {
             Self::Run(OfRun(error)) => exit_of(error),
             Self::NoDeck { .. }
+            | Self::Import(_)
             | Self::UnstableSpectrum
             | Self::NotStatic { .. }
             | Self::Surface { .. }
@@ -203,7 +214,9 @@ impl CliError {
             | Self::NoPaperWidth
             | Self::CropRanges { .. }
             | Self::Components { .. } => Exit::Usage,
-            Self::OutExists { .. } | Self::FileExists { .. } => Exit::Output,
+            Self::OutExists { .. } | Self::DeckExists { .. } | Self::FileExists { .. } => {
+                Exit::Output
+            }
             Self::OneProcess { .. }
             | Self::NoMpi { .. }
             | Self::OtherMpi { .. }

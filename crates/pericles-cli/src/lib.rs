@@ -4,7 +4,7 @@
 //! Each command is one module, which reads its arguments, calls a library and prints the results. `run`, `check`,
 //! `modes`, `dispersion` and `resume` act on decks and output folders; `sweep` and `converge` on one deck with
 //! several values; `info`, `plot`, `view`, `diff`, `export` and `report` (`page`) on results; `reproduce` on the built-in
-//! studies; `geodesics` on surfaces; `mesh` on mesh files; `bench` on fixed bodies. The commands share the console,
+//! studies; `import` on input files of other codes; `geodesics` on surfaces; `mesh` on mesh files; `bench` on fixed bodies. The commands share the console,
 //! the display of a run (`screen`), signal handling, the processes that share a run
 //! (`processes`), and errors, each of which leads to one message and one exit
 //! status (`exit`).
@@ -30,6 +30,7 @@ mod folder;
 mod frames;
 mod geodesics;
 mod given;
+mod import;
 mod info;
 mod manual;
 mod mesh;
@@ -127,6 +128,7 @@ pub fn command(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Fit(args) => fit::fit(&args),
         Command::Reproduce(args) => reproduce::reproduce(&args),
         Command::New(args) => new::new(&args),
+        Command::Import(args) => import::import(&args),
         Command::Schema(args) => schema::schema(&args),
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::man(&args),

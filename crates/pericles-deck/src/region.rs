@@ -24,6 +24,8 @@ pub(crate) struct Frame {
     pub(crate) cells: bool,
     /// Whether the body or a piece of it is a mesh, whose file defines sets and, by default, the spacing.
     pub(crate) mesh: bool,
+    /// Whether the body is a list of points, whose volumes define the spacing by default.
+    pub(crate) listed: bool,
 }
 
 impl Frame {
@@ -34,12 +36,13 @@ impl Frame {
             spacing: None,
             cells: true,
             mesh: true,
+            listed: false,
         }
     }
 
-    /// Returns whether the spacing is unknown before a mesh is read.
+    /// Returns whether the spacing is unknown before the file of the body is read.
     pub(crate) fn is_automatic(&self) -> bool {
-        self.mesh && self.spacing.is_none()
+        (self.mesh || self.listed) && self.spacing.is_none()
     }
 }
 

@@ -7,7 +7,7 @@
 //! | `0.5 0.0 0.0 1 1e-9`, `0.5, 0, 0, 1, 1e-9` | a point; numbers are separated by commas or blanks |
 //!
 //! Without a header the columns are `x y z block volume`, or, for bodies of lower dimension, also
-//! `x y block volume` and `x block volume`. Lengths are in m, volumes in m³. PeriLab and Peridigm write this
+//! `x y block volume` and `x block volume`. Numbers are returned as given. PeriLab and Peridigm write this
 //! format.
 
 use std::path::Path;
@@ -266,7 +266,7 @@ fn read_point(words: &[&str], columns: &[Column], points: &mut ListedPoints) -> 
         let number = word.parse().unwrap_or(f64::NAN);
         match *column {
             Column::Coordinate(c) if number.is_finite() => place[c] = number,
-            Column::Coordinate(_) => return reject("a finite number, in m"),
+            Column::Coordinate(_) => return reject("a finite number"),
             // Many tools write all columns as reals.
             Column::Block
                 if number.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&number) =>
@@ -275,7 +275,7 @@ fn read_point(words: &[&str], columns: &[Column], points: &mut ListedPoints) -> 
             }
             Column::Block => return reject("a whole number, 0 or greater"),
             Column::Volume if number > 0.0 && number.is_finite() => points.volumes.push(number),
-            Column::Volume => return reject("a positive number, in m³"),
+            Column::Volume => return reject("a positive number"),
         }
     }
     points.positions.push(place);

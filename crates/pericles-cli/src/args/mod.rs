@@ -3,6 +3,7 @@
 mod converge;
 mod fit;
 mod geometry;
+mod import;
 mod modes;
 mod plot;
 mod shared;
@@ -20,6 +21,7 @@ use crate::exit::Exit;
 pub(crate) use converge::ConvergeArgs;
 pub(crate) use fit::FitArgs;
 pub(crate) use geometry::{ExportArgs, ExportFormat, MeshArgs, ViewArgs};
+pub(crate) use import::ImportArgs;
 pub(crate) use modes::ModesArgs;
 pub(crate) use plot::{Format, PlotArgs};
 pub(crate) use shared::{
@@ -34,6 +36,7 @@ const ABOUT: &str = "Peridynamics: elastic waves, cracks and nonlocal surfaces f
 const EXAMPLES: &str = "\
 Examples:
   pericles new                                        list the example decks
+  pericles import model.yaml                          input file of PeriLab or Peridigm as a deck
   pericles check examples/fracture/branching.toml     size, memory, time step and run time, without running
   pericles run examples/fracture/branching.toml       results in ./branching, then ./branching-2, ...
   pericles run deck.toml --out results --force        results in ./results, replacing earlier ones
@@ -72,6 +75,9 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// List the example decks, or copy one to start from
     New(NewArgs),
+    /// Import an input file of PeriLab (YAML) or Peridigm (text, YAML, XML) as a deck
+    #[command(after_help = import::NOTES)]
+    Import(ImportArgs),
     /// Run a deck
     #[command(after_help = "\
 Results are written to ./<deck's name>, then ./<name>-2, -3, ..., or to the folder given by --out:

@@ -13,6 +13,7 @@ mod fit;
 mod folder;
 mod formats;
 mod geodesics;
+mod import;
 mod instructions;
 mod memory;
 mod mesh;

@@ -62,6 +62,10 @@ const CRATES: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "pericles-import",
+        &["pericles", "pericles-deck", "pericles-io"],
+    ),
+    (
         "pericles-run",
         &[
             "pericles",
@@ -111,6 +115,7 @@ const CRATES: &[(&str, &[&str])] = &[
             "pericles-heat",
             "pericles-deck",
             "pericles-io",
+            "pericles-import",
             "pericles-run",
             "pericles-studies",
         ],

@@ -62,6 +62,7 @@ fn one_piece(table: &Table<'_>, is_further: bool) -> (BodyRead, [f64; 3]) {
         spacing: table.number("spacing").filter(|spacing| *spacing > 0.0),
         cells: word != "mesh",
         mesh: word == "mesh",
+        listed: word == "points",
     };
     let state = state(table, frame.dimension);
     let (shape, origin) = match given.map(GivenShape::source) {
@@ -71,6 +72,7 @@ fn one_piece(table: &Table<'_>, is_further: bool) -> (BodyRead, [f64; 3]) {
     if let Some(shape) = &shape {
         frame.cells &= shape.has_equal_cells();
         frame.spacing = shape.spacing();
+        frame.cells &= !frame.is_automatic();
     }
     let read = BodyRead {
         shape,
@@ -94,6 +96,7 @@ fn surface(table: &Table<'_>, given: Option<Source>) -> BodyRead {
             spacing: spacing.flatten(),
             cells: false,
             mesh: false,
+            listed: false,
         },
         state: Some(StressState::Spatial),
         surface: Some(SurfaceRead { shape, areas }),

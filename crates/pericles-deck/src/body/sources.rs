@@ -20,15 +20,24 @@ use crate::region::{self, Frame};
 #[serde(deny_unknown_fields)]
 pub struct PointsFile {
     /// File of the geometry; a relative path starts at the deck's folder. Points: text file with one line
-    /// `x y z block volume` per point (m, m³).
+    /// `x y z block volume` per point.
     #[serde(rename = "file")]
     #[deck(key = "file")]
     pub path: PathBuf,
-    /// Listed points: their approximate distance.
+    /// Points, mesh, solid, outline from a file: unit of length of the coordinates, such as "mm"; volumes of points are in its
+    /// third power. Required for mesh, solid and outline, because the file formats do not store it; default for points: "m".
     ///
     /// In m.
-    #[deck(quantity = Length, range = POSITIVE)]
-    pub spacing: f64,
+    #[serde(default)]
+    #[deck(with = unit_of, check = check_unit)]
+    pub unit: Option<f64>,
+    /// Listed points: their approximate distance; "auto" takes that of their mean volume, (volume/thickness)^(1/dimension);
+    /// `material.horizon` must then be a length.
+    ///
+    /// In m.
+    #[serde(default)]
+    #[deck(quantity = Length, range = POSITIVE, none = "auto", default)]
+    pub spacing: Option<f64>,
     /// Points, mesh: dimension of the body: 1, 2 or 3 for points, 2 or 3 for meshes.
     #[deck(flatten, key = "dimension", with = dimension_of_points)]
     pub dimension: usize,
@@ -45,8 +54,8 @@ pub struct MeshFile {
     #[serde(rename = "file")]
     #[deck(key = "file")]
     pub path: PathBuf,
-    /// Mesh, solid, outline from a file: unit of length of the coordinates, such as "mm". Required with `file` for these
-    /// shapes, because the file formats do not store it; lists of points are in m.
+    /// Points, mesh, solid, outline from a file: unit of length of the coordinates, such as "mm"; volumes of points are in its
+    /// third power. Required for mesh, solid and outline, because the file formats do not store it; default for points: "m".
     ///
     /// In m.
     #[deck(with = unit_of, check = check_unit)]
@@ -148,8 +157,8 @@ pub enum Boundary {
         /// between polygons.
         #[serde(rename = "file")]
         path: PathBuf,
-        /// Mesh, solid, outline from a file: unit of length of the coordinates, such as "mm". Required with `file` for these
-        /// shapes, because the file formats do not store it; lists of points are in m.
+        /// Points, mesh, solid, outline from a file: unit of length of the coordinates, such as "mm"; volumes of points are in its
+        /// third power. Required for mesh, solid and outline, because the file formats do not store it; default for points: "m".
         ///
         /// In m.
         #[deck(

@@ -138,12 +138,12 @@ impl SolidShape {
         }
     }
 
-    /// Returns the spacing, m: the largest one of a grid, of several pieces the spacing of the first; none for a mesh with automatic
-    /// spacing.
+    /// Returns the spacing, m: the largest one of a grid, of several pieces the spacing of the first; none for a mesh and listed points
+    /// with automatic spacing.
     pub fn spacing(&self) -> Option<f64> {
         match self {
             Self::Lattice(lattice) => Some(lattice.grid.spacing),
-            Self::Points(file) => Some(file.spacing),
+            Self::Points(file) => file.spacing,
             Self::Mesh(mesh) => mesh.spacing,
             Self::Filled(filled) => Some(filled.spacing),
             Self::Pieces(_) => self.first()?.spacing(),
@@ -290,6 +290,7 @@ impl Default for BodyRead {
                 spacing: None,
                 cells: true,
                 mesh: false,
+                listed: false,
             },
             state: None,
             surface: None,

@@ -24,7 +24,7 @@ pub(crate) struct Setting {
     pub(crate) state: Option<StressState>,
     /// Spacing, m.
     pub(crate) spacing: Option<f64>,
-    /// Whether the spacing is unknown before a mesh is read.
+    /// Whether the spacing is unknown before the file of the body is read.
     pub(crate) automatic: bool,
     /// Whether all cells are squares or cubes of one size.
     pub(crate) cells: bool,
@@ -197,12 +197,12 @@ impl GivenFunction {
 }
 
 impl LengthUnit {
-    /// Returns the unit in metres. Spacings are rejected if they are unknown before a mesh is read.
+    /// Returns the unit in metres. Spacings are rejected if they are unknown before the file of the body is read.
     fn metres(self, table: &Table<'_>, setting: &Setting) -> Option<f64> {
         if setting.automatic && self == Self::Spacing {
             table.report(Fault::OutOfRange {
                 value: "spacing".into(),
-                allowed: "another unit `r`, or a `spacing` in [body]; the spacing of this mesh is unknown before the mesh is read".into(),
+                allowed: "another unit `r`, or a `spacing` in [body]; the spacing of this body is unknown before its file is read".into(),
             });
         }
         match self {

@@ -27,7 +27,7 @@ pub(super) struct Family {
         range = RATIOS,
         forbid_if(
             scope.body.frame.is_automatic(),
-            "the spacing of this mesh is unknown before the mesh is read: set `horizon` to a length (usual: 3 times the mean size that `pericles mesh` prints), or set `spacing` in [body]"
+            "the spacing of this body is unknown before its file is read: set `horizon` to a length (usual: 3 times the mean cell size, which `pericles mesh` prints for meshes), or set `spacing` in [body]"
         )
     )]
     horizon_ratio: Option<f64>,

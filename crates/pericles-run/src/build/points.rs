@@ -74,28 +74,36 @@ impl Assembler<'_> {
         const OFF: f64 = 2.0;
         let path = resources.beside(&file.path);
         let listed = (resources.read_points)(&path, file.dimension, resources.memory);
-        let listed = listed.map_err(|error| {
+        let mut listed = listed.map_err(|error| {
             let fault = error.fault(|reason| {
                 Fault::other(
                     "invalid",
                     reason,
-                    "expected: one line `x y z block volume` per point, in m and m³; a relative path starts at the deck's folder",
+                    "expected: one line `x y z block volume` per point, in `unit` (default: m) and its third power; a relative path starts at the deck's folder",
                 )
             });
             at_path("body.file", fault)
         })?;
+        let unit = file.unit.unwrap_or(1.0);
+        for place in &mut listed.positions {
+            *place = place.map(|x| x * unit);
+        }
+        for volume in &mut listed.volumes {
+            *volume *= unit.powi(3);
+        }
         let cloud = listed
             .cloud(file.dimension, solid.shape.section())
             .map_err(|error| at("body.file", error))?;
-        let (given, found) = (file.spacing, cloud.spacing());
+        let found = cloud.spacing();
         // Without partial volumes the size of the cells has no influence.
         let is_used = solid.material.volume_correction() != VolumeCorrection::None;
-        if !is_used || (1.0 / OFF..=OFF).contains(&(found / given)) {
+        let is_far = |given: &f64| is_used && !(1.0 / OFF..=OFF).contains(&(found / given));
+        let Some(given) = file.spacing.filter(is_far) else {
             self.check_listed(solid, &cloud, resources)?;
             self.warnings
                 .extend(self.check_listed_points(&listed, &cloud));
             return Ok(cloud);
-        }
+        };
         let section = ["area", "thickness"].get(file.dimension - 1);
         let section = section.map(|key| format!("; `{key}` is part of the volumes"));
         let fault = Fault::other(
@@ -106,7 +114,7 @@ impl Assembler<'_> {
                 quantity(given, "m")
             ),
             format!(
-                "check `spacing`, and the units of the file: coordinates in m, volumes in m³{}",
+                "check `spacing`, and `unit`: coordinates are in this unit of length (default: m), volumes in its third power{}",
                 section.unwrap_or_default()
             ),
         );

@@ -277,6 +277,49 @@ end = "1 us"
 "#;
 
 #[test]
+fn listed_points_have_the_unit_of_length_of_the_deck() {
+    use pericles_run::Resources;
+    let built = |text: &str, unit: f64| {
+        let deck = Deck::parse(text, "plate.toml", &[]).unwrap();
+        let built = deck.build_with(Resources {
+            read_points: &|_, _, _| {
+                let mut listed = listed_plate(2e-9 / unit.powi(3));
+                for place in &mut listed.positions {
+                    *place = place.map(|x| x / unit);
+                }
+                Ok(listed)
+            },
+            ..Resources::default()
+        });
+        built.unwrap_or_else(|error| panic!("{error}"))
+    };
+    let metres = built(LISTED, 1.0);
+    let unit = LISTED.replace("plate.txt\"", "plate.txt\"\nunit = \"mm\"");
+    let millimetres = built(&unit, 1e-3);
+    for i in 0..72 {
+        let (a, b) = (metres.cloud.point(i), millimetres.cloud.point(i));
+        assert!((0..2).all(|c| (a[c] - b[c]).abs() < 1e-15), "{a:?} {b:?}");
+    }
+    assert!((millimetres.cloud.spacing() / 1e-3 - 1.0).abs() < 1e-12);
+    // Without `spacing`, the size of the mean cell counts.
+    let automatic = LISTED.replace("spacing = \"1 mm\"\n", "");
+    let error = Deck::parse(&automatic, "plate.toml", &[]).unwrap_err();
+    let error = error.to_string();
+    assert!(error.contains("before its file is read"), "{error}");
+    assert!(error.contains("`depth` instead"), "{error}");
+    let automatic = automatic.replace("cells = 1", "depth = \"1 mm\"");
+    let automatic = automatic.replace("horizon_ratio = 3", "horizon = \"3 mm\"");
+    let automatic = built(&automatic, 1.0);
+    assert_eq!(automatic.cloud.spacing(), metres.cloud.spacing());
+    let edge = automatic
+        .sets
+        .iter()
+        .find(|(name, _)| name == "edge")
+        .unwrap();
+    assert_eq!(edge.1.len(), 6);
+}
+
+#[test]
 fn listed_points_of_a_grid_equal_the_grid() {
     use pericles::operator::PointSubset;
     use pericles_run::Resources;
@@ -345,9 +388,12 @@ fn listed_points_of_a_grid_equal_the_grid() {
         "{error}"
     );
     assert!(
-        error.contains("volumes in m³; `thickness` is part"),
+        error.contains("volumes in its third power; `thickness` is part"),
         "{error}"
     );
+    let unit = LISTED.replace("plate.txt\"", "plate.txt\"\nunit = \"10 m\"");
+    let error = rejected(&unit, cell);
+    assert!(error.contains("correspond to a spacing of 31.6"), "{error}");
     let error = rejected(&LISTED.replace("block = 2", "block = 3"), cell);
     assert!(
         error.contains("the set `right` selects no point"),
