@@ -177,20 +177,19 @@ fn resumed_runs_of_growing_bodies_are_bitwise_identical() {
     }
 }
 
+/// All schemes converge to the same motion, at least with the second order; points become active at ends of all steps.
 #[test]
 fn every_scheme_integrates_growing_bodies() {
     for model in [MODELS[0], MODELS[1]] {
-        let deck = |scheme: &str| {
+        let deck = |scheme: &str, dt: f64| {
             let deck = GROWING.replace("MODEL", model);
-            deck.replace("dt = 0.05", &format!("dt = 0.02, scheme = \"{scheme}\""))
+            deck.replace("dt = 0.05", &format!("dt = {dt}, scheme = \"{scheme}\""))
         };
-        let reference = end(&deck("velocity-verlet"));
-        let largest = reference
-            .state()
-            .u
-            .iter()
-            .fold(0.0f64, |most, u| most.max(u.abs()));
+        let reference = end(&deck("velocity-verlet", 0.005));
+        let size = |u: &[f64]| u.iter().fold(0.0f64, |most, u| most.max(u.abs()));
+        let largest = size(&reference.state().u);
         for scheme in [
+            "velocity-verlet",
             "rk4",
             "dormand-prince",
             "newmark",
@@ -199,11 +198,15 @@ fn every_scheme_integrates_growing_bodies() {
             "trapezoidal",
             "trigonometric",
         ] {
-            let run = end(&deck(scheme));
-            let pairs = run.state().u.iter().zip(&reference.state().u);
-            let error = pairs.fold(0.0f64, |most, (a, b)| most.max((a - b).abs()));
-            assert!(error < 2e-3 * largest, "{scheme}: {error:e} of {largest:e}");
-            check_resume(|| build(&deck(scheme)).simulation(), [31, 118])
+            let [coarse, fine] = [0.04, 0.02].map(|dt| {
+                let run = end(&deck(scheme, dt));
+                let pairs = run.state().u.iter().zip(&reference.state().u);
+                size(&pairs.map(|(a, b)| a - b).collect::<Vec<f64>>()) / largest
+            });
+            // The second bound is that of the reference.
+            let converges = fine < coarse / 3.5 && fine < 1e-2 || fine < 1e-4;
+            assert!(converges, "{scheme}: {coarse:e}, {fine:e}");
+            check_resume(|| build(&deck(scheme, 0.04)).simulation(), [31, 118])
                 .unwrap_or_else(|error| panic!("{scheme}: {error}"));
         }
     }
