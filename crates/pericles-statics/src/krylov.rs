@@ -36,6 +36,8 @@ pub struct Solution {
     pub products: u64,
     /// Norm of the final residual on free entries.
     pub residual: f64,
+    /// Norm of the first residual on free entries.
+    pub first: f64,
     /// Reason why the iteration ended.
     pub end: End,
 }
@@ -98,14 +100,17 @@ pub fn conjugate_gradients(
     solution.fill(0.0);
     let mut products = 0;
     let mut along = 0.0;
+    let mut first = None;
     loop {
         let norm = domain
             .sum(n, |k| free[k] * residual[k] * residual[k])
             .sqrt();
+        let first = *first.get_or_insert(norm);
         let reactions = || domain.sum(n, |k| (1.0 - free[k]) * residual[k] * residual[k]);
         let ended = |end| Solution {
             products,
             residual: norm,
+            first,
             end,
         };
         if norm <= goal.absolute
@@ -138,6 +143,7 @@ pub fn conjugate_gradients(
             return Ok(Solution {
                 products,
                 residual: norm,
+                first,
                 end: End::Indefinite,
             });
         }

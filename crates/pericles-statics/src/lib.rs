@@ -17,6 +17,7 @@
 mod block;
 mod breaking;
 mod control;
+mod convergence;
 mod eigen;
 mod equilibrium;
 mod error;

@@ -1,9 +1,13 @@
 //! Natural frequencies and mode shapes.
 
 use pericles::domain::Replicated;
+use pericles::lanes::{F64x8, LANES, Real};
+use pericles::parallel::{for_each_chunk, for_each_point};
 use pericles::{Interrupt, Need, Requirement, Result, System};
 
-use crate::block::{combination, symmetric_products};
+use crate::block::{
+    Group, combinations, copy_from, copy_to, selected, sums, symmetric_products, zeros,
+};
 use crate::eigen::symmetric_eigen;
 use crate::error::StaticsError;
 use crate::multigrid::Multigrid;
@@ -111,7 +115,7 @@ impl NaturalModes {
             return Err(StaticsError::NoModes { reason }.into());
         }
         let mut problem = Problem::new(system, t, u);
-        let free = problem.unknowns.len() - problem.rigid.len().min(problem.unknowns.len());
+        let free = problem.unknowns.len().saturating_sub(problem.rigid.len());
         /// Additional iterated vectors, so that the last requested modes converge as fast as the others.
         const EXTRA: usize = 4;
         let count = options.count.min(free);
@@ -125,7 +129,7 @@ impl NaturalModes {
             if (0..count).all(converged) {
                 return Ok(block.into_modes(problem, count, &norms, iteration));
             }
-            block.improve(&mut problem, residuals, |k| {
+            block.improve(&mut problem, &residuals, |k| {
                 norms[k] > 0.1 * options.tolerance
             });
         }
@@ -161,19 +165,19 @@ impl NaturalModes {
     }
 }
 
-/// K and M on the free entries, and the preconditioner.
+/// K and M of the unknowns, and the preconditioner.
 struct Problem<'a> {
     system: &'a System,
     t: f64,
     u: &'a [f64],
+    unknowns: Unknowns,
     masses: Vec<f64>,
     ones: Vec<f64>,
-    unknowns: Unknowns,
-    free: Vec<f64>,
-    multigrid: Multigrid,
-    reduced: [Vec<f64>; 2],
+    multigrid: Multigrid<F64x8>,
     /// Rigid-body motions x with xᵀ M x = 1, and M x.
     rigid: Vec<[Vec<f64>; 2]>,
+    /// A vector of unknowns, and two of all entries.
+    work: [Vec<f64>; 3],
     products: u64,
 }
 
@@ -189,83 +193,112 @@ impl<'a> Problem<'a> {
         let unknowns = Unknowns::new(system.dimension(), &free);
         let multigrid = surrogate.preconditioner(&unknowns);
         let pieces = free_pieces(system, &surrogate, &unknowns);
-        let reduced = || vec![0.0; unknowns.len()];
-        let mut problem = Self {
+        let gathered = |vector: &[f64]| {
+            let mut of_unknowns = vec![0.0; unknowns.len()];
+            unknowns.gather(vector, &mut of_unknowns);
+            of_unknowns
+        };
+        let masses = gathered(&system.masses());
+        let weighted =
+            |x: &[f64]| -> Vec<f64> { x.iter().zip(&masses).map(|(x, m)| x * m).collect() };
+        let mut rigid: Vec<[Vec<f64>; 2]> = Vec::new();
+        for motion in spread(&pieces, system, &Replicated::new(system.domain())) {
+            let mut motion = gathered(&motion);
+            for [other, of_other] in &rigid {
+                let along = system.domain().dot(of_other, &motion);
+                add_multiple(&mut motion, -along, other);
+            }
+            let size = system.domain().dot(&motion, &weighted(&motion)).sqrt();
+            if size > 0.0 {
+                motion.iter_mut().for_each(|x| *x /= size);
+                let of_motion = weighted(&motion);
+                rigid.push([motion, of_motion]);
+            }
+        }
+        Self {
             system,
             t,
             u,
-            masses: system.masses(),
-            ones: vec![1.0; free.len()],
-            reduced: [reduced(), reduced()],
+            ones: vec![1.0; unknowns.len()],
+            work: [unknowns.len(), free.len(), free.len()].map(|length| vec![0.0; length]),
+            masses,
             unknowns,
-            free,
             multigrid,
-            rigid: Vec::new(),
+            rigid,
             products: 0,
-        };
-        for mut motion in spread(&pieces, system, &Replicated::new(system.domain())) {
-            problem.remove_rigid(&mut motion);
-            let weighted = problem.weighted(&motion);
-            let size = system.domain().dot(&motion, &weighted).sqrt();
-            if size > 0.0 {
-                let scaled = |vector: Vec<f64>| vector.into_iter().map(|x| x / size).collect();
-                problem.rigid.push([scaled(motion), scaled(weighted)]);
-            }
-        }
-        problem
-    }
-
-    fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
-        self.system.domain().dot(a, b)
-    }
-
-    /// Returns M x.
-    fn weighted(&self, x: &[f64]) -> Vec<f64> {
-        x.iter().zip(&self.masses).map(|(x, m)| x * m).collect()
-    }
-
-    /// Returns K x on free entries.
-    fn product(&mut self, x: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; x.len()];
-        stiffness_into(
-            self.system,
-            Derivative::Tangent,
-            [self.t; 2],
-            self.u,
-            x,
-            &mut out,
-        );
-        out.iter_mut()
-            .zip(&self.free)
-            .for_each(|(k, free)| *k *= free);
-        self.products += 1;
-        out
-    }
-
-    fn remove_rigid(&self, x: &mut [f64]) {
-        for [motion, weighted] in &self.rigid {
-            let along = self.dot(weighted, x);
-            add_multiple(x, -along, motion);
         }
     }
 
-    /// Returns an approximation of K⁻¹ r without rigid-body motions.
-    fn preconditioned(&mut self, residual: &[f64]) -> Vec<f64> {
-        let mut out = vec![0.0; residual.len()];
-        let [right, solution] = &mut self.reduced;
-        self.unknowns.gather(residual, right);
-        self.multigrid.apply_into(right, solution);
-        self.unknowns.scatter(solution, &mut out);
+    /// Returns K x of the first `count` vectors of a group.
+    fn product(&mut self, x: &[F64x8], count: usize) -> Group {
+        let mut product = zeros(x.len());
+        let [of_unknowns, whole, out] = &mut self.work;
+        for lane in 0..count {
+            copy_from(x, lane, of_unknowns);
+            self.unknowns.scatter(of_unknowns, whole);
+            let times = [self.t; 2];
+            stiffness_into(self.system, Derivative::Tangent, times, self.u, whole, out);
+            self.unknowns.gather(out, of_unknowns);
+            copy_to(&mut product, lane, of_unknowns);
+        }
+        self.products += count as u64;
+        product
+    }
+
+    /// Returns approximations of K⁻¹ r without rigid-body motions.
+    fn preconditioned(&mut self, residuals: &[F64x8]) -> Group {
+        let mut out = zeros(residuals.len());
+        self.multigrid.apply_into(residuals, &mut out);
         self.remove_rigid(&mut out);
         out
+    }
+
+    fn remove_rigid(&self, group: &mut Group) {
+        for [motion, of_motion] in &self.rigid {
+            let term = |k: usize| F64x8::splat(of_motion[k]) * group[k];
+            let along = sums(group.len(), term);
+            for_each_chunk(group, &|first, chunk| {
+                for (x, motion) in chunk.iter_mut().zip(&motion[first..]) {
+                    *x = *x - F64x8::splat(*motion) * along;
+                }
+            });
+        }
+    }
+
+    /// Returns the approximations of K⁻¹ r for `count` vectors, with their products.
+    fn improved(&mut self, residuals: &[Group], count: usize) -> Vectors {
+        let mut vectors = Vectors::default();
+        for (number, group) in residuals.iter().enumerate() {
+            let x = self.preconditioned(group);
+            let product = self.product(&x, LANES.min(count - number * LANES));
+            vectors.x.push(x);
+            vectors.product.push(product);
+        }
+        vectors
     }
 }
 
 /// Vectors and their products with the stiffness.
 #[derive(Default)]
 struct Vectors {
-    x: Vec<Vec<f64>>,
-    product: Vec<Vec<f64>>,
+    x: Vec<Group>,
+    product: Vec<Group>,
+}
+
+impl Vectors {
+    fn append(&mut self, other: Self) {
+        self.x.extend(other.x);
+        self.product.extend(other.product);
+    }
+
+    /// Returns linear combinations of the vectors, one for each row of coefficients.
+    fn combined(&self, coefficients: &[Vec<f64>], entries: usize) -> Self {
+        let rows: Vec<&[f64]> = coefficients.iter().map(Vec::as_slice).collect();
+        Self {
+            x: combinations(&self.x, &rows, entries),
+            product: combinations(&self.product, &rows, entries),
+        }
+    }
 }
 
 /// Iterates: approximate modes and their last search directions.
@@ -278,21 +311,19 @@ struct Block {
 impl Block {
     /// Starts from pseudorandom vectors, smoothed by the preconditioner.
     fn start(problem: &mut Problem<'_>, size: usize) -> Self {
-        let entries = problem.free.len();
-        let mut modes = Vectors::default();
-        for k in 0..size {
-            let phase = |entry: usize| {
-                let x = (12.9898 * entry as f64 + 78.233 * k as f64).sin() * 43_758.545_3;
-                x - x.floor() - 0.5
-            };
-            let noise: Vec<f64> = (0..entries)
-                .map(|entry| phase(entry) * problem.masses[entry] * problem.free[entry])
-                .collect();
-            let x = problem.preconditioned(&noise);
-            let product = problem.product(&x);
-            modes.x.push(x);
-            modes.product.push(product);
-        }
+        let entries = problem.unknowns.len();
+        let noise = |entry: usize, k: usize| {
+            let x = (12.9898 * entry as f64 + 78.233 * k as f64).sin() * 43_758.545_3;
+            x - x.floor() - 0.5
+        };
+        let group = |first: usize| {
+            let lane = |entry: usize, k: usize| if k < size { noise(entry, k) } else { 0.0 };
+            for_each_point(entries, &|entry| {
+                F64x8::from_fn(|k| problem.masses[entry] * lane(entry, first + k))
+            })
+        };
+        let start: Vec<Group> = (0..size).step_by(LANES).map(group).collect();
+        let modes = problem.improved(&start, size);
         let mut block = Self {
             values: Vec::new(),
             modes: Vectors::default(),
@@ -303,25 +334,26 @@ impl Block {
     }
 
     /// Returns K x − ω² M x of every iterate.
-    fn residuals(&self, problem: &Problem<'_>) -> Vec<Vec<f64>> {
+    fn residuals(&self, problem: &Problem<'_>) -> Vec<Group> {
         let pairs = self.modes.x.iter().zip(&self.modes.product);
-        let residual = |((x, product), value): ((&Vec<f64>, &Vec<f64>), &f64)| {
-            let entries = x.iter().zip(product).zip(&problem.masses);
-            entries
-                .map(|((x, kx), mass)| kx - value * mass * x)
-                .collect()
+        let residual = |(number, (x, product)): (usize, (&Group, &Group))| -> Group {
+            let value = |lane: usize| self.values.get(number * LANES + lane);
+            let values = F64x8::from_fn(|lane| value(lane).copied().unwrap_or(0.0));
+            for_each_point(x.len(), &|k| {
+                product[k] - F64x8::splat(problem.masses[k]) * values * x[k]
+            })
         };
-        pairs.zip(&self.values).map(residual).collect()
+        pairs.enumerate().map(residual).collect()
     }
 
     /// Returns the norms of the residuals over ω².
-    fn norms(&self, problem: &Problem<'_>, residuals: &[Vec<f64>]) -> Vec<f64> {
-        let norm = |(residual, value): (&Vec<f64>, &f64)| {
-            let square = |k: usize| problem.free[k] * residual[k] * residual[k] / problem.masses[k];
-            let sum = problem.system.domain().sum(residual.len(), square);
-            sum.sqrt() / value.abs()
-        };
-        residuals.iter().zip(&self.values).map(norm).collect()
+    fn norms(&self, problem: &Problem<'_>, residuals: &[Group]) -> Vec<f64> {
+        let squares = residuals.iter().flat_map(|group| {
+            let term = |k: usize| group[k] * group[k] / F64x8::splat(problem.masses[k]);
+            sums(group.len(), term).0
+        });
+        let norm = |(square, value): (f64, &f64)| square.sqrt() / value.abs();
+        squares.zip(&self.values).map(norm).collect()
     }
 
     /// Computes the optimal iterates in the space of the current ones, their preconditioned residuals and the
@@ -329,46 +361,37 @@ impl Block {
     fn improve(
         &mut self,
         problem: &mut Problem<'_>,
-        residuals: Vec<Vec<f64>>,
+        residuals: &[Group],
         active: impl Fn(usize) -> bool,
     ) {
-        let size = self.modes.x.len();
+        let size = self.values.len();
+        let numbers: Vec<usize> = (0..size).filter(|k| active(*k)).collect();
+        let residuals = selected(residuals, &numbers, problem.unknowns.len());
         let mut space = std::mem::take(&mut self.modes);
-        for (_, residual) in residuals.iter().enumerate().filter(|(k, _)| active(*k)) {
-            let direction = problem.preconditioned(residual);
-            let product = problem.product(&direction);
-            space.x.push(direction);
-            space.product.push(product);
-        }
-        let last = std::mem::take(&mut self.directions);
-        space.x.extend(last.x);
-        space.product.extend(last.product);
-        self.rayleigh_ritz(problem, space, size, size);
+        let old = LANES * space.x.len();
+        space.append(problem.improved(&residuals, numbers.len()));
+        space.append(std::mem::take(&mut self.directions));
+        self.rayleigh_ritz(problem, space, old, size);
     }
 
     /// Sets the iterates to the `size` lowest Ritz pairs of a space; their components outside of the first
     /// `old` vectors are the directions.
     fn rayleigh_ritz(&mut self, problem: &Problem<'_>, space: Vectors, old: usize, size: usize) {
-        let n = space.x.len();
+        let n = LANES * space.x.len();
         let mass = symmetric_products(&space.x, &space.x, &problem.masses);
         let stiffness = symmetric_products(&space.product, &space.x, &problem.ones);
-        let coefficients = lowest(n, &mass, &stiffness, size);
-        self.values = coefficients.iter().map(|(value, _)| *value).collect();
-        let entries = problem.free.len();
-        let combined = |vectors: &[Vec<f64>], from: usize| -> Vec<Vec<f64>> {
-            let of_one =
-                |(_, c): &(f64, Vec<f64>)| combination(&vectors[from..], &c[from..], entries);
-            coefficients.iter().map(of_one).collect()
-        };
-        self.modes = Vectors {
-            x: combined(&space.x, 0),
-            product: combined(&space.product, 0),
-        };
+        let found = lowest(n, &mass, &stiffness, size);
+        self.values = found.iter().map(|(value, _)| *value).collect();
+        let entries = problem.unknowns.len();
+        let mut coefficients: Vec<Vec<f64>> = found.into_iter().map(|(_, c)| c).collect();
+        self.modes = space.combined(&coefficients, entries);
         if old > 0 {
-            self.directions = Vectors {
-                x: combined(&space.x, old),
-                product: combined(&space.product, old),
-            };
+            coefficients.iter_mut().for_each(|c| c[..old].fill(0.0));
+            self.directions = space.combined(&coefficients, entries);
+        }
+        // Combinations of almost dependent vectors magnify round-off, of which rigid-body motions have the lowest quotient.
+        for group in self.modes.x.iter_mut().chain(&mut self.directions.x) {
+            problem.remove_rigid(group);
         }
     }
 
@@ -379,14 +402,19 @@ impl Block {
         norms: &[f64],
         iterations: u32,
     ) -> NaturalModes {
-        let pairs = self.modes.x.into_iter().zip(&self.values).zip(norms);
-        let modes = pairs.take(count).map(|((shape, value), residual)| Mode {
-            frequency_hz: value.max(0.0).sqrt() / std::f64::consts::TAU,
-            residual: *residual,
-            shape,
-        });
+        let [mut of_unknowns, whole, _] = problem.work;
+        let mode = |k: usize| {
+            copy_from(&self.modes.x[k / LANES], k % LANES, &mut of_unknowns);
+            let mut shape = vec![0.0; whole.len()];
+            problem.unknowns.scatter(&of_unknowns, &mut shape);
+            Mode {
+                frequency_hz: self.values[k].max(0.0).sqrt() / std::f64::consts::TAU,
+                residual: norms[k],
+                shape,
+            }
+        };
         NaturalModes {
-            modes: modes.collect(),
+            modes: (0..count.min(norms.len())).map(mode).collect(),
             rigid_modes: problem.rigid.len(),
             products: problem.products,
             iterations,

@@ -42,6 +42,8 @@ pub struct LoadStep<'a> {
     pub loading: Loading<'a>,
     /// Largest norm of loads or reactions before, N.
     pub largest: f64,
+    /// Tolerance of the residual of prescribed states.
+    pub tolerance: f64,
 }
 
 impl LoadStep<'_> {
@@ -179,6 +181,7 @@ impl Follower<'_, '_> {
                     load: &load,
                     supports: &supports,
                     largest: self.step.largest,
+                    tolerance: self.step.tolerance,
                 };
                 (self.equilibrium).find(self.system, &target, &mut u, self.interrupt)?
             }
@@ -238,7 +241,7 @@ impl Follower<'_, '_> {
         effort: &mut Effort,
     ) -> Result<f64> {
         let whole = self.trapezoid(a, b);
-        if !with_work || is_linear(self.system) {
+        if !with_work || is_linear(self.system) || self.is_idle(a, b) {
             return Ok(whole);
         }
         let s = 0.5 * (a.s + b.s);
@@ -265,6 +268,13 @@ impl Follower<'_, '_> {
         }
         let first = self.work(a, &middle, with_work, depth + 1, effort)?;
         Ok(first + self.work(&middle, b, with_work, depth + 1, effort)?)
+    }
+
+    /// Returns whether no load and no support does work between two stations, as in a body that changes its temperature only.
+    fn is_idle(&self, a: &Station, b: &Station) -> bool {
+        let works = |k: usize| (a.acting[k] != 0.0 || b.acting[k] != 0.0) && a.u[k] != b.u[k];
+        let any = self.system.has_interactions() || (0..a.u.len()).any(works);
+        self.system.domain().all(!any)
     }
 
     fn trapezoid(&self, a: &Station, b: &Station) -> f64 {

@@ -2,8 +2,16 @@
 //!
 //! Each row is computed by one thread in a fixed order, so that results do not depend on the number of threads.
 
+use pericles::for_each_instruction_set;
+use pericles::lanes::{InstructionSet, Real};
 use pericles::parallel::{BLOCK, Cost, for_each_chunk, for_each_chunk_of};
 use rayon::prelude::*;
+
+/// Entry of a vector, or the entries of eight vectors ([`F64x8`](pericles::lanes::F64x8)), which are multiplied by a matrix
+/// at the same time.
+pub trait Number: Real + Send + Sync {}
+
+impl<T: Real + Send + Sync> Number for T {}
 
 /// Receives the column and value of an entry.
 pub type Push<'a> = dyn FnMut(usize, f64) + 'a;
@@ -142,53 +150,29 @@ impl SparseMatrix {
     }
 
     /// `out` = A x.
-    pub fn multiply_into(&self, x: &[f64], out: &mut [f64]) {
-        for_each_chunk_of(out, self.cost(), &|first, chunk| {
-            for (k, out) in chunk.iter_mut().enumerate() {
-                *out = self.row_product(first + k, x);
-            }
-        });
+    pub fn multiply_into<T: Number>(&self, x: &[T], out: &mut [T]) {
+        self.update(Update::Set, x, out);
     }
 
     /// `out` −= A x.
-    pub fn subtract_product(&self, x: &[f64], out: &mut [f64]) {
-        for_each_chunk_of(out, self.cost(), &|first, chunk| {
-            for (k, out) in chunk.iter_mut().enumerate() {
-                *out -= self.row_product(first + k, x);
-            }
-        });
+    pub fn subtract_product<T: Number>(&self, x: &[T], out: &mut [T]) {
+        self.update(Update::Subtract, x, out);
     }
 
     /// `out` += A x.
-    pub fn add_product(&self, x: &[f64], out: &mut [f64]) {
-        for_each_chunk_of(out, self.cost(), &|first, chunk| {
-            for (k, out) in chunk.iter_mut().enumerate() {
-                *out += self.row_product(first + k, x);
-            }
+    pub fn add_product<T: Number>(&self, x: &[T], out: &mut [T]) {
+        self.update(Update::Add, x, out);
+    }
+
+    fn update<T: Number>(&self, update: Update, x: &[T], out: &mut [T]) {
+        assert_eq!(x.len(), self.columns);
+        let set = InstructionSet::detect();
+        // Eight vectors take about as long as one bond per entry and vector as well.
+        let numbers = size_of::<T>() / size_of::<f64>();
+        let cost = Cost::bonds((self.value.len() * numbers) as u64);
+        for_each_chunk_of(out, cost, &|first, chunk| {
+            multiply_rows(set, self, (update, first), x, chunk);
         });
-    }
-
-    /// Returns the cost of a product with a vector.
-    fn cost(&self) -> Cost {
-        Cost::bonds(self.value.len() as u64)
-    }
-
-    fn row_product(&self, i: usize, x: &[f64]) -> f64 {
-        let range = self.start[i]..self.start[i + 1];
-        let (columns, values) = (&self.column[range.clone()], &self.value[range]);
-        // Two independent sums, which a processor adds in parallel.
-        let (mut even, mut odd) = (0.0, 0.0);
-        let pairs = columns.len() / 2 * 2;
-        let mut k = 0;
-        while k < pairs {
-            even += values[k] * x[columns[k] as usize];
-            odd += values[k + 1] * x[columns[k + 1] as usize];
-            k += 2;
-        }
-        if pairs < columns.len() {
-            even += values[pairs] * x[columns[pairs] as usize];
-        }
-        even + odd
     }
 
     /// Returns Aᵀ.
@@ -237,12 +221,63 @@ impl SparseMatrix {
     }
 }
 
+/// Use of a product.
+#[derive(Clone, Copy)]
+enum Update {
+    Set,
+    Add,
+    Subtract,
+}
+
+#[inline(always)]
+fn multiply_rows_body<T: Number>(
+    matrix: &SparseMatrix,
+    (update, first): (Update, usize),
+    x: &[T],
+    out: &mut [T],
+) {
+    for k in 0..out.len() {
+        let range = matrix.start[first + k]..matrix.start[first + k + 1];
+        let columns = &matrix.column[range.clone()];
+        let values = &matrix.value[range][..columns.len()];
+        // Two independent sums, which a processor adds in parallel.
+        let (mut even, mut odd) = (T::splat(0.0), T::splat(0.0));
+        let pairs = columns.len() / 2 * 2;
+        let mut e = 0;
+        while e < pairs {
+            even = even + T::splat(values[e]) * x[columns[e] as usize];
+            odd = odd + T::splat(values[e + 1]) * x[columns[e + 1] as usize];
+            e += 2;
+        }
+        if pairs < columns.len() {
+            even = even + T::splat(values[pairs]) * x[columns[pairs] as usize];
+        }
+        let product = even + odd;
+        out[k] = match update {
+            Update::Set => product,
+            Update::Add => out[k] + product,
+            Update::Subtract => out[k] - product,
+        };
+    }
+}
+
+for_each_instruction_set! {
+    /// Multiplies the rows from `first` on.
+    fn multiply_rows [T: Number] <T> (
+        matrix: &SparseMatrix,
+        place: (Update, usize),
+        x: &[T],
+        out: &mut [T],
+    ) = multiply_rows_body
+}
+
 /// y += factor x
-pub(crate) fn add_multiple(y: &mut [f64], factor: f64, x: &[f64]) {
+pub(crate) fn add_multiple<T: Number>(y: &mut [T], factor: f64, x: &[T]) {
+    let factor = T::splat(factor);
     for_each_chunk(y, &|first, chunk| {
         let length = chunk.len();
         for (y, x) in chunk.iter_mut().zip(&x[first..first + length]) {
-            *y += factor * x;
+            *y = *y + factor * *x;
         }
     });
 }

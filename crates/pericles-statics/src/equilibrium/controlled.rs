@@ -163,6 +163,7 @@ impl Equilibrium {
             load: &load,
             supports: &target.reference.supports,
             largest: target.largest,
+            tolerance,
         };
         let norm = self.evaluate(system, &at, u, effort);
         let of_loads = self.load_norm(system, &at)?;

@@ -8,6 +8,7 @@ use pericles::domain::Replicated;
 use pericles::operator::PointSubset;
 use pericles::{Interrupt, IterationProgress, PericlesError, Result, System};
 
+use crate::convergence::Convergence;
 use crate::error::StaticsError;
 use crate::krylov::{End, Goal, KrylovWork, Solution, conjugate_gradients};
 use crate::multigrid::Multigrid;
@@ -31,6 +32,8 @@ pub struct Target<'a> {
     pub supports: &'a [f64],
     /// Largest norm of loads or reactions before, N.
     pub largest: f64,
+    /// Tolerance of the norm of the residual relative to the largest norm of loads or reactions.
+    pub tolerance: f64,
 }
 
 /// Effort to find a static state.
@@ -75,6 +78,8 @@ pub struct Equilibrium {
     /// Stiffness from which the preconditioner was created, in an earlier state with the same bonds.
     stiffness: Stiffness,
     multigrid: Multigrid,
+    /// Convergence of the linear problems of the present load step.
+    pub(crate) convergence: Convergence,
     pieces: Vec<FreePiece>,
     /// Rigid-body motions that are projected out.
     rigid: Vec<Vec<f64>>,
@@ -120,6 +125,7 @@ impl Equilibrium {
             options,
             stiffness,
             multigrid,
+            convergence: Convergence::default(),
             pieces,
             rigid,
             left_out: 0.0,
@@ -229,10 +235,10 @@ impl Equilibrium {
                 interrupt.report(IterationProgress {
                     iteration: effort.newton,
                     residual: effort.residual,
-                    tolerance: self.options.tolerance,
+                    tolerance: target.tolerance,
                     evaluations: effort.products + effort.forces,
                 });
-                if effort.residual <= self.options.tolerance {
+                if effort.residual <= target.tolerance {
                     return Ok(effort);
                 }
             }
@@ -240,7 +246,7 @@ impl Equilibrium {
                 t: target.t,
                 fraction: 0.0,
                 residual: effort.residual,
-                tolerance: self.options.tolerance,
+                tolerance: target.tolerance,
                 indefinite,
             };
             if effort.newton == u64::from(self.options.newton_steps) || !norm.is_finite() {
@@ -250,7 +256,7 @@ impl Equilibrium {
             /// Fraction of the tolerance, because round-off makes the true residual slightly larger than that
             /// of the recurrence.
             const MARGIN: f64 = 0.9;
-            let finest = MARGIN * self.options.tolerance;
+            let finest = MARGIN * target.tolerance;
             let goal = Goal {
                 absolute: if linear || lifted {
                     0.0
@@ -389,14 +395,16 @@ impl Equilibrium {
             rigid: &self.rigid,
             work: &mut self.reduced,
         };
-        conjugate_gradients(
+        let solved = conjugate_gradients(
             &mut tangent,
             (system.domain(), &self.free),
             &mut self.residual,
             &mut self.correction,
             goal,
             &mut self.krylov,
-        )
+        )?;
+        self.convergence.note(&solved);
+        Ok(solved)
     }
 
     /// Line search along the correction. Returns the reduced norm of the residual; `None` if it does not decrease.
@@ -434,7 +442,7 @@ pericles::saved! {
         options: fixed,
         // By `recreate`.
         replicated, unknowns, multigrid, pieces, rigid, left_out: rebuilt,
-        krylov, reduced, residual, correction, lift, trial, trial_residual: scratch,
+        convergence, krylov, reduced, residual, correction, lift, trial, trial_residual: scratch,
     }
 }
 

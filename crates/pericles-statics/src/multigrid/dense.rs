@@ -1,6 +1,6 @@
 //! Cholesky factorisation of small dense matrices.
 
-use crate::sparse::SparseMatrix;
+use crate::sparse::{Number, SparseMatrix};
 
 /// Factorisation A = L Lᵀ of a symmetric positive semidefinite matrix. Singular directions get a stiffness of
 /// the size of the diagonal, so that a factor always exists.
@@ -51,21 +51,23 @@ impl DenseCholesky {
     }
 
     /// Computes `out` = A⁻¹ x.
-    pub fn solve_into(&self, x: &[f64], out: &mut [f64]) {
+    pub fn solve_into<T: Number>(&self, x: &[T], out: &mut [T]) {
         let n = self.n;
         for i in 0..n {
             let row = &self.lower[i * n..i * n + i + 1];
-            let dot: f64 = row[..i].iter().zip(&out[..i]).map(|(a, b)| a * b).sum();
-            out[i] = (x[i] - dot) / row[i];
+            let mut sum = T::splat(0.0);
+            for (a, b) in row[..i].iter().zip(&out[..i]) {
+                sum = sum + T::splat(*a) * *b;
+            }
+            out[i] = (x[i] - sum) / T::splat(row[i]);
         }
         for i in (0..n).rev() {
-            out[i] /= self.lower[i * n + i];
+            out[i] = out[i] / T::splat(self.lower[i * n + i]);
             let value = out[i];
             let row = &self.lower[i * n..i * n + i];
-            out[..i]
-                .iter_mut()
-                .zip(row)
-                .for_each(|(x, l)| *x -= l * value);
+            for (x, l) in out[..i].iter_mut().zip(row) {
+                *x = *x - T::splat(*l) * value;
+            }
         }
     }
 }

@@ -4,7 +4,7 @@
 //! Neighbouring points are grouped into aggregates. Rigid-body motions, the displacements of low energy, are
 //! represented exactly on each aggregate. One step of damped Jacobi iteration smooths them to the
 //! prolongation P, and PᵀAP is the matrix of the next level, until it is small enough for a dense
-//! factorisation. One application is a W-cycle with Chebyshev smoothing, which is symmetric and positive
+//! factorisation. One application is a V-cycle with Chebyshev smoothing, which is symmetric and positive
 //! definite and thus a valid preconditioner for conjugate gradients.
 //!
 //! Aggregates depend only on the order of the points and every sum has a fixed order, so that results do not
@@ -22,7 +22,7 @@ mod tentative;
 pub use dense::DenseCholesky;
 pub use nodes::NearKernel;
 
-use crate::sparse::{SparseMatrix, add_multiple};
+use crate::sparse::{Number, SparseMatrix};
 use nodes::Nodes;
 use smoother::Smoother;
 use tentative::Tentative;
@@ -33,16 +33,15 @@ const COARSEST: usize = 300;
 const LEAST_REDUCTION: f64 = 0.8;
 
 #[derive(Debug, Clone)]
-struct Level {
+struct Level<T> {
     matrix: SparseMatrix,
     smoother: Smoother,
     prolongation: SparseMatrix,
     restriction: SparseMatrix,
-    solution: Vec<f64>,
-    right: Vec<f64>,
-    residual: Vec<f64>,
-    direction: Vec<f64>,
-    first: Vec<f64>,
+    solution: Vec<T>,
+    right: Vec<T>,
+    residual: Vec<T>,
+    direction: Vec<T>,
 }
 
 #[derive(Debug, Clone)]
@@ -52,16 +51,16 @@ enum Coarsest {
     Smoothed(SparseMatrix, Smoother),
 }
 
-/// Multigrid hierarchy.
+/// Multigrid hierarchy, with work vectors for one vector or for eight at the same time.
 #[derive(Debug, Clone)]
-pub struct Multigrid {
-    levels: Vec<Level>,
+pub struct Multigrid<T = f64> {
+    levels: Vec<Level<T>>,
     coarsest: Coarsest,
     /// Work vectors of the coarsest level: solution, right-hand side, residual, direction.
-    work: [Vec<f64>; 4],
+    work: [Vec<T>; 4],
 }
 
-impl Multigrid {
+impl<T: Number> Multigrid<T> {
     /// Creates the hierarchy of a symmetric positive definite matrix with a positive diagonal.
     pub fn new(matrix: SparseMatrix, kernel: NearKernel) -> Self {
         let mut levels = Vec::new();
@@ -78,7 +77,7 @@ impl Multigrid {
             let restriction = prolongation.transposed();
             let next = restriction.product(&present.product(&prolongation));
             nodes = tentative.coarse;
-            let zeros = || vec![0.0; present.rows()];
+            let zeros = || vec![T::splat(0.0); present.rows()];
             levels.push(Level {
                 smoother,
                 prolongation,
@@ -87,7 +86,6 @@ impl Multigrid {
                 right: zeros(),
                 residual: zeros(),
                 direction: zeros(),
-                first: zeros(),
                 matrix: present,
             });
             present = next;
@@ -102,12 +100,12 @@ impl Multigrid {
         Self {
             levels,
             coarsest,
-            work: std::array::from_fn(|_| vec![0.0; n]),
+            work: std::array::from_fn(|_| vec![T::splat(0.0); n]),
         }
     }
 
     /// Computes `out`, an approximation of A⁻¹ x.
-    pub fn apply_into(&mut self, x: &[f64], out: &mut [f64]) {
+    pub fn apply_into(&mut self, x: &[T], out: &mut [T]) {
         match self.levels.first_mut() {
             Some(finest) => finest.right.copy_from_slice(x),
             None => self.work[1].copy_from_slice(x),
@@ -119,22 +117,6 @@ impl Multigrid {
         });
     }
 
-    /// Applies two cycles from a coarse level, which compute its `solution` and change its `right`. With one
-    /// cycle the number of iterations would grow slowly with the number of levels.
-    fn correct(&mut self, number: usize) {
-        self.cycle(number);
-        let Some(level) = self.levels.get_mut(number) else {
-            return;
-        };
-        level.first.copy_from_slice(&level.solution);
-        level
-            .matrix
-            .subtract_product(&level.solution, &mut level.right);
-        self.cycle(number);
-        let level = &mut self.levels[number];
-        add_multiple(&mut level.solution, 1.0, &level.first);
-    }
-
     /// Applies one cycle from a level, which computes its `solution` from its `right`.
     fn cycle(&mut self, number: usize) {
         let Some(level) = self.levels.get_mut(number) else {
@@ -142,13 +124,13 @@ impl Multigrid {
             match &self.coarsest {
                 Coarsest::Dense(factor) => factor.solve_into(right, solution),
                 Coarsest::Smoothed(matrix, smoother) => {
-                    solution.fill(0.0);
+                    solution.fill(T::splat(0.0));
                     smoother.smooth(matrix, right, solution, [residual, direction], true);
                 }
             }
             return;
         };
-        level.solution.fill(0.0);
+        level.solution.fill(T::splat(0.0));
         level.smoother.smooth(
             &level.matrix,
             &level.right,
@@ -167,7 +149,7 @@ impl Multigrid {
             None => &mut self.work[1],
         };
         level.restriction.multiply_into(&level.residual, right);
-        self.correct(number + 1);
+        self.cycle(number + 1);
         let (above, below) = self.levels.split_at_mut(number + 1);
         let level = &mut above[number];
         let correction = match below.first() {
@@ -202,9 +184,9 @@ impl Multigrid {
 
     /// Returns the memory, bytes.
     pub fn bytes(&self) -> usize {
-        let of_level = |level: &Level| {
+        let of_level = |level: &Level<T>| {
             let matrices = [&level.matrix, &level.prolongation, &level.restriction];
-            let numbers = 6 * level.solution.len() * size_of::<f64>();
+            let numbers = 4 * level.solution.len() * size_of::<T>();
             numbers + matrices.iter().map(|one| one.bytes()).sum::<usize>()
         };
         let last = self.sizes().last().map_or(0, |[_, entries]| entries * 12);

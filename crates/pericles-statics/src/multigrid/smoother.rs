@@ -1,7 +1,7 @@
 //! Chebyshev smoothing.
 
 use crate::eigen::symmetric_eigen;
-use crate::sparse::SparseMatrix;
+use crate::sparse::{Number, SparseMatrix};
 use pericles::domain::Domain;
 use pericles::parallel::for_each_chunk;
 
@@ -112,12 +112,12 @@ impl Smoother {
     }
 
     /// Applies one smoothing to `x` for A x = `right`; `from_zero` indicates that `x` is zero.
-    pub fn smooth(
+    pub fn smooth<T: Number>(
         &self,
         matrix: &SparseMatrix,
-        right: &[f64],
-        x: &mut [f64],
-        [residual, direction]: [&mut Vec<f64>; 2],
+        right: &[T],
+        x: &mut [T],
+        [residual, direction]: [&mut Vec<T>; 2],
         from_zero: bool,
     ) {
         let (high, low) = (self.largest, LOWEST * self.largest);
@@ -141,14 +141,19 @@ impl Smoother {
             let (inverse, residual) = (&self.inverse, &*residual);
             for_each_chunk(direction, &|first, chunk| {
                 for (k, d) in chunk.iter_mut().enumerate() {
-                    let before = if step == 0 { 0.0 } else { keep * *d };
-                    *d = before + push * inverse[first + k] * residual[first + k];
+                    let by = T::splat(push * inverse[first + k]);
+                    let before = if step == 0 {
+                        T::splat(0.0)
+                    } else {
+                        T::splat(keep) * *d
+                    };
+                    *d = before + by * residual[first + k];
                 }
             });
             let direction = &*direction;
             for_each_chunk(x, &|first, chunk| {
                 for (k, x) in chunk.iter_mut().enumerate() {
-                    *x += direction[first + k];
+                    *x = *x + direction[first + k];
                 }
             });
         }

@@ -87,6 +87,7 @@ impl StaticScheme {
                 values: step.values,
             },
             largest: self.largest,
+            tolerance: self.options.tolerance,
         };
         let before = (state.u.clone(), self.factor);
         let mut factor = self.factor;

@@ -111,6 +111,7 @@ impl StaticScheme {
                 supports: [&at.supports; 2],
             },
             largest: SEVERED * self.largest,
+            tolerance: self.options.tolerance,
         };
         self.follow(system, step, (&mut response, &mut 1.0, false), interrupt)?;
         let factor = events::next(system, &response, self.factor);
@@ -209,6 +210,7 @@ impl StaticScheme {
                 supports: [&supports[0], &supports[1]],
             },
             largest: self.largest,
+            tolerance: self.options.tolerance,
         };
         self.follow(system, step, (u, &mut 1.0, with_work), interrupt)
     }

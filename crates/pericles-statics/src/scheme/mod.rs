@@ -18,6 +18,7 @@ use pericles::{
 
 use crate::breaking::BreakingRule;
 use crate::control::Control;
+use crate::convergence::Convergence;
 use crate::equilibrium::{Effort, Equilibrium};
 use crate::error::{MOST_REPLICATED, StaticsError, is_no_equilibrium};
 use crate::events;
@@ -231,6 +232,7 @@ impl StaticScheme {
         interrupt: Interrupt<'_>,
     ) -> Result<Option<f64>> {
         let (t, largest) = (step.t, self.largest.max(step.largest));
+        let tolerance = step.tolerance;
         let mut whole = 1.0;
         let failed = if self.relaxing {
             None
@@ -245,7 +247,7 @@ impl StaticScheme {
         const ITERATIONS: u32 = 200_000;
         let options = RelaxationOptions {
             damping: Damping::Fire,
-            tolerance: self.options.tolerance,
+            tolerance,
             iterations: ITERATIONS,
         };
         let mut relaxation = Relaxation::new(options, system)?;
@@ -264,6 +266,9 @@ impl StaticScheme {
 
     /// Breaks bonds beyond their limits and recomputes the static state until no bond breaks. `is_jump` is that of
     /// [`Self::break_bonds`] for the present state.
+    ///
+    /// States between which bonds break only select the next bonds, for which a hundred times the tolerance suffices. When
+    /// no bond breaks, the state is computed to the tolerance, and bonds are checked again.
     fn settle(
         &mut self,
         system: &mut System,
@@ -271,14 +276,24 @@ impl StaticScheme {
         (t, load, mut is_jump): (f64, &[f64], bool),
         interrupt: Interrupt<'_>,
     ) -> Result<()> {
+        let finest = self.options.tolerance;
+        /// Largest tolerance of states between which bonds break.
+        const COARSEST: f64 = 1e-3;
+        let coarse = (100.0 * finest).min(COARSEST).max(finest);
+        let mut tolerance = finest;
         loop {
             // A body that moves to its next state breaks everywhere.
             let rule = match self.relaxing {
                 true => BreakingRule::All,
                 false => self.options.breaking,
             };
-            if !self.break_bonds(system, state, (t, is_jump), rule) {
+            let breaks = self.break_bonds(system, state, (t, is_jump), rule);
+            if !breaks && tolerance == finest {
                 return Ok(());
+            }
+            tolerance = if breaks { coarse } else { finest };
+            if self.equilibrium.convergence.is_outdated() {
+                self.prepare(system, t)?;
             }
             is_jump = true;
             let before = state.u.clone();
@@ -291,6 +306,7 @@ impl StaticScheme {
                     supports: [&before; 2],
                 },
                 largest: self.largest,
+                tolerance,
             };
             self.reach(system, step, (&mut state.u, false), interrupt)?;
             system.book_equilibrium(&chord(t, 0.0, &state.u, &before, false), &mut state.a);
@@ -419,6 +435,7 @@ impl Integrator for StaticScheme {
             return Ok(());
         }
         self.prepare(system, t_next)?;
+        self.equilibrium.convergence = Convergence::default();
         let first = state.step == 0;
         let before = state.u.clone();
         // An initial displacement is not a static state: the first load step is a jump.
@@ -439,6 +456,7 @@ impl Integrator for StaticScheme {
                 supports: [&before, &supports],
             },
             largest: self.largest.max(system.thermal_force(t_next, &before)),
+            tolerance: self.options.tolerance,
         };
         self.relaxing = false;
         let elastic = system.stored_energy(state.t, &before);

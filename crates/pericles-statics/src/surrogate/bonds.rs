@@ -166,8 +166,9 @@ fn is_same(a: &Bond, b: &Bond) -> bool {
     apart < 1e-6 * a.length_squared()
 }
 
-/// Selects the bonds of a point: on a lattice those to adjacent cells, in space without corners; for other
-/// clouds the nearest ones; in any case enough to make the stiffness regular.
+/// Selects the bonds of a point: on a lattice those to adjacent cells, in space without corners, and where such a bond is broken
+/// the shortest intact one near its direction, so that the springs connect the same parts of the body as the bonds; for other
+/// clouds the nearest bonds.
 fn chosen(cloud: &PointCloud, mut all: Vec<Bond>) -> Vec<Bond> {
     let d = cloud.dimension();
     all.sort_by(|a, b| {
@@ -177,15 +178,93 @@ fn chosen(cloud: &PointCloud, mut all: Vec<Bond>) -> Vec<Bond> {
     // Squared distances in cells: 1.5² and 1.45².
     let reach = if d == 3 { 2.1025 } else { 2.25 };
     let nearest = [3, 12, 18][d - 1];
-    let wanted = match cloud.cell_sides() {
-        Some(sides) => {
-            let cells = |bond: &Bond| (0..d).map(|c| (bond.xi[c] / sides[c]).powi(2)).sum::<f64>();
-            // By distance in cells, so that bonds within reach come first.
-            all.sort_by(|a, b| cells(a).total_cmp(&cells(b)));
-            all.partition_point(|bond| cells(bond) <= reach)
-        }
-        None => nearest,
+    let Some(sides) = cloud.cell_sides() else {
+        all.truncate(nearest);
+        return all;
     };
-    all.truncate(wanted.max(2 * d));
-    all
+    let cells = |bond: &Bond| -> [f64; 3] {
+        std::array::from_fn(|c| if c < d { bond.xi[c] / sides[c] } else { 0.0 })
+    };
+    let square = |x: [f64; 3]| x.iter().map(|x| x * x).sum::<f64>();
+    all.sort_by(|a, b| square(cells(a)).total_cmp(&square(cells(b))));
+    let mut open = directions(d, reach);
+    let (mut kept, mut passed) = (Vec::new(), Vec::new());
+    for bond in all {
+        let xi = cells(&bond);
+        let along = |unit: &[f64; 3]| (0..3).map(|c| unit[c] * xi[c]).sum::<f64>();
+        /// Smallest cosine of the angle between a bond and the direction that it represents.
+        const COSINE: f64 = 0.86;
+        let cosines = open.iter().map(along).enumerate();
+        match cosines.max_by(|a, b| a.1.total_cmp(&b.1)) {
+            Some((direction, cosine)) if cosine > COSINE * square(xi).sqrt() => {
+                open.remove(direction);
+                kept.push(bond);
+            }
+            _ => passed.push(bond),
+        }
+        if open.is_empty() {
+            break;
+        }
+    }
+    let missing = (2 * d).saturating_sub(kept.len());
+    kept.extend(passed.into_iter().take(missing));
+    kept
+}
+
+/// Returns the unit vectors towards adjacent cells within a squared distance in cells.
+fn directions(dimension: usize, reach: f64) -> Vec<[f64; 3]> {
+    let place = |k: usize| [k % 3, k / 3 % 3, k / 9].map(|x| x as f64 - 1.0);
+    let all = (0..27).map(place).filter_map(|offset| {
+        let square: f64 = offset.iter().map(|x| x * x).sum();
+        let is_flat = offset[dimension..].iter().all(|x| *x == 0.0);
+        (is_flat && square > 0.0 && square <= reach).then(|| offset.map(|x| x / square.sqrt()))
+    });
+    all.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use pericles::space::Grid;
+
+    /// Offsets, in cells, of the selected bonds of a point of a plate whose intact bonds are those for which `is_intact` holds.
+    fn offsets(is_intact: impl Fn([i32; 2]) -> bool) -> Vec<[i32; 2]> {
+        let cloud = Grid::plate([1.0, 1.0], 0.1, 1.0).points().unwrap();
+        let all = (-3..=3).flat_map(|x: i32| (-3..=3).map(move |y: i32| [x, y]));
+        let bonds =
+            all.filter(|&[x, y]| [x, y] != [0, 0] && x * x + y * y <= 9 && is_intact([x, y]));
+        let bonds = bonds.map(|[x, y]| Bond {
+            neighbour: 0,
+            xi: [0.1 * f64::from(x), 0.1 * f64::from(y), 0.0],
+        });
+        let cell = |x: f64| (10.0 * x).round() as i32;
+        let chosen = chosen(&cloud, bonds.collect());
+        let mut offsets: Vec<[i32; 2]> = chosen
+            .iter()
+            .map(|bond| [cell(bond.xi[0]), cell(bond.xi[1])])
+            .collect();
+        offsets.sort_unstable();
+        offsets
+    }
+
+    #[test]
+    fn springs_of_an_intact_lattice_connect_adjacent_cells() {
+        let adjacent: Vec<[i32; 2]> = (-1..=1)
+            .flat_map(|x| (-1..=1).map(move |y| [x, y]))
+            .filter(|offset| *offset != [0, 0])
+            .collect();
+        assert_eq!(offsets(|_| true), adjacent);
+    }
+
+    #[test]
+    fn springs_cross_a_crack_that_long_bonds_cross() {
+        // Bonds to the next row above are broken, longer ones are intact.
+        let chosen = offsets(|[_, y]| y != 1);
+        assert_eq!(
+            chosen.iter().filter(|[_, y]| *y > 1).count(),
+            3,
+            "{chosen:?}"
+        );
+        assert_eq!(chosen.len(), 8);
+    }
 }

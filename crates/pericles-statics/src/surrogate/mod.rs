@@ -25,7 +25,7 @@ use pericles::System;
 use pericles::domain::Replicated;
 
 use crate::multigrid::{Multigrid, NearKernel};
-use crate::sparse::SparseMatrix;
+use crate::sparse::{Number, SparseMatrix};
 use crate::unknowns::Unknowns;
 
 /// Surrogate of a body.
@@ -210,7 +210,7 @@ impl Surrogate {
     }
 
     /// Returns the multigrid preconditioner of the unknowns.
-    pub fn preconditioner(&self, unknowns: &Unknowns) -> Multigrid {
+    pub fn preconditioner<T: Number>(&self, unknowns: &Unknowns) -> Multigrid<T> {
         Multigrid::new(self.matrix(unknowns), self.near_kernel(unknowns))
     }
 }

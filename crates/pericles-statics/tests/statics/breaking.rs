@@ -12,9 +12,13 @@ use crate::bodies::points;
 /// Prescribed displacement of each end at t = 1.
 const OPENING: f64 = 0.012;
 
-/// A linear plate with an edge notch and prescribed displacements `opening` of both ends at t = 1.
+/// A linear plate of 16 × 16 points with an edge notch and prescribed displacements `opening` of both ends at t = 1.
 fn plate(opening: f64, law: PairLaw) -> System {
-    let cells = 16;
+    notched(16, opening, law)
+}
+
+/// A plate with an edge notch and prescribed displacements `opening` of both ends at t = 1.
+fn notched(cells: u32, opening: f64, law: PairLaw) -> System {
     let dx = 1.0 / f64::from(cells);
     let plate = Arc::new(Grid::plate([1.0, 1.0], dx, 1.0).points().unwrap());
     let mut material =
@@ -143,4 +147,21 @@ fn systems_without_support_for_event_by_event_analysis_are_errors() {
         still.contains("no load and no prescribed displacement"),
         "{still}"
     );
+}
+
+#[test]
+fn a_crack_through_the_plate_needs_few_products_per_broken_bond() {
+    // With one preconditioner per load step and all states to the tolerance there are more than ten products per bond.
+    for law in [PairLaw::Linear, PairLaw::BondStretch] {
+        let mut run = run_of(notched(40, OPENING, law), BreakingRule::default(), 4);
+        run.run_to_end().unwrap();
+        let energies = run.snapshot().energies();
+        let part = energies.balance() / energies.work;
+        let broken = run.system().operator().broken_bonds();
+        let products = run.integrator().inner_iterations().unwrap().total;
+        println!("{law:?}: {products} products, {broken} broken bonds, balance {part:.1e}");
+        assert!(broken > 800, "{law:?}: {broken}");
+        assert!(products < 5 * broken, "{law:?}: {products}");
+        assert!(part.abs() < 1e-6, "{law:?}: {part}");
+    }
 }

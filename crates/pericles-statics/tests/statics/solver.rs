@@ -21,6 +21,7 @@ fn effort(system: &System) -> Effort {
         load: &load,
         supports: &supports,
         largest: 0.0,
+        tolerance: StaticOptions::default().tolerance,
     };
     let found = solver.find(system, &target, &mut u, Interrupt::never());
     let effort = found.unwrap();

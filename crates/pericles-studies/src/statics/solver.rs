@@ -58,6 +58,7 @@ pub(super) fn state_of(system: &System) -> Result<(Took, Vec<f64>), RunError> {
         load: &load,
         supports: &supports,
         largest: 0.0,
+        tolerance: TOLERANCE,
     };
     let mut solver = Equilibrium::new(options, system, free);
     let took = solver.find(system, &target, &mut u, Interrupt::never())?;
