@@ -198,7 +198,7 @@ fn every_scheme_integrates_growing_bodies() {
             "trapezoidal",
             "trigonometric",
         ] {
-            let [coarse, fine] = [0.04, 0.02].map(|dt| {
+            let [coarse, fine] = [0.02, 0.01].map(|dt| {
                 let run = end(&deck(scheme, dt));
                 let pairs = run.state().u.iter().zip(&reference.state().u);
                 size(&pairs.map(|(a, b)| a - b).collect::<Vec<f64>>()) / largest
@@ -206,7 +206,7 @@ fn every_scheme_integrates_growing_bodies() {
             // The second bound is that of the reference.
             let converges = fine < coarse / 3.5 && fine < 1e-2 || fine < 1e-4;
             assert!(converges, "{scheme}: {coarse:e}, {fine:e}");
-            check_resume(|| build(&deck(scheme, 0.04)).simulation(), [31, 118])
+            check_resume(|| build(&deck(scheme, 0.02)).simulation(), [31, 118])
                 .unwrap_or_else(|error| panic!("{scheme}: {error}"));
         }
     }
