@@ -28,13 +28,14 @@ impl Ledger {
         }
     }
 
-    /// Adds the work and impulse of a load over a step.
+    /// Adds the work and impulse of a load over a step; `shares` returns the shares of the load that act on a point at its
+    /// start and end.
     pub(crate) fn book_load(
         &mut self,
         step: &StepEnd<'_>,
         load: &Load,
-        loading: Option<ProportionalLoading>,
-        cloud: &PointCloud,
+        (loading, cloud): (Option<ProportionalLoading>, &PointCloud),
+        shares: impl Fn(usize) -> [f64; 2] + Sync,
     ) {
         let (n, volumes) = (cloud.len(), cloud.volumes());
         // Paths other than the cubic do not use the middle: no values are computed for it.
@@ -43,13 +44,13 @@ impl Ledger {
             Path::MeanVelocity(_) | Path::Chord { .. } | Path::SubStep => step.t,
         };
         let mut times = [step.t - step.dt, middle, step.t];
-        let mut shares = [1.0; 3];
+        let mut levels = [1.0; 3];
         if let Some(loading) = loading {
             let [first, last] = loading.factors;
             times = [loading.reference; 3];
-            shares = [first, 0.5 * (first + last), last];
+            levels = [first, 0.5 * (first + last), last];
         }
-        let mut factors = [0, 1, 2].map(|m| shares[m] * load.factor(times[m]));
+        let mut factors = [0, 1, 2].map(|m| levels[m] * load.factor(times[m]));
         if let Path::Chord { first: true, .. } = step.path {
             factors[0] = 0.0;
         }
@@ -61,7 +62,10 @@ impl Ledger {
             for c in (0..cloud.dimension()).filter(|&c| !load.is_free_of(c)) {
                 let push_and_work = |k: usize| {
                     let (i, amplitude) = (load.points[k] as usize, amplitude(c, k));
-                    let forces = std::array::from_fn(|m| amplitude[m] * factors[m] * volumes[i]);
+                    let [first, last] = shares(i);
+                    let shares = [first, last, last];
+                    let forces =
+                        std::array::from_fn(|m| amplitude[m] * factors[m] * volumes[i] * shares[m]);
                     step.push_and_work(forces, c * n + i)
                 };
                 let (domain, points) = (cloud.domain(), load.points.len());
@@ -102,7 +106,7 @@ mod tests {
                     };
                     let cloud = PointCloud::new(1, vec![0.0], vec![1.0], 1.0).unwrap();
                     let mut ledger = Ledger::default();
-                    ledger.book_load(&step, &load, None, &cloud);
+                    ledger.book_load(&step, &load, (None, &cloud), |_| [1.0; 2]);
                     ledger.work
                 })
                 .sum()

@@ -130,6 +130,50 @@ fn energy_and_momentum_are_balanced_while_points_become_active() {
     }
 }
 
+/// A heavy wall that grows on a fixed floor; MODEL and TIME are placeholders.
+const HEAVY: &str = r#"
+activation = [{ set = "late", active_from = { expression = "y" } }]
+body = { shape = "plate", size = [12, 8], spacing = 1, plane = "strain" }
+material = { density = 1, youngs_modulus = 10, horizon_ratio = 3, MODEL }
+sets = { late = { where = "y > 2" }, floor = { layer = { side = "-y", cells = 2 } } }
+constraint = [{ set = "floor", displacement = [0, 0] }]
+load = [{ set = "all", body_force = [0, -1e-3], function = { kind = "constant" } }]
+time = { end = 10, TIME }
+"#;
+
+/// Loads act on active points only, in the balances of energy and momentum too, and the floor bears the whole wall at the
+/// end.
+#[test]
+fn weight_of_new_points_is_balanced() {
+    let deck = |model: &str, time: &str| HEAVY.replace("MODEL", model).replace("TIME", time);
+    for model in [MODELS[0], MODELS[1]] {
+        let mut run = build(&deck(model, "dt = 0.05")).simulation();
+        let (n, mut scale) = (run.system().points(), 0.0f64);
+        run.run(|now| {
+            let energies = now.snapshot().energies();
+            scale = scale.max(energies.elastic);
+            let bound = if model == MODELS[0] { 1e-12 } else { 1e-4 };
+            let error = energies.balance() / scale.max(1e-9);
+            assert!(error.abs() < bound, "{}: {error:e}", now.state().step);
+            let momentum: f64 = now.state().v[n..].iter().sum();
+            let error = momentum - now.system().ledger().impulse[1];
+            assert!(error.abs() < 1e-12, "{error:e}");
+            Control::Continue
+        })
+        .unwrap();
+        let run = end(&deck(
+            model,
+            "scheme = \"static\", load_steps = 20, tolerance = 1e-9",
+        ));
+        let energies = run.snapshot().energies();
+        let bound = if model == MODELS[0] { 1e-6 } else { 1e-2 };
+        let error = energies.balance() / energies.elastic;
+        assert!(error.abs() < bound, "{error:e} {energies:?}");
+        let reaction: f64 = run.snapshot().field(Field::Reaction)[n..].iter().sum();
+        assert!((reaction - 96e-3).abs() < 1e-8, "{reaction}");
+    }
+}
+
 /// A moving body grows without deformation: a new point takes the motion of the body.
 #[test]
 fn new_points_move_with_the_body() {

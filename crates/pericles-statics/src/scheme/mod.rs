@@ -442,7 +442,7 @@ impl Integrator for StaticScheme {
         let displaced = first && !system.domain().all(before.iter().all(|u| *u == 0.0));
         let mut loads = [vec![0.0; self.entries], vec![0.0; self.entries]];
         if !first {
-            system.load_density_into(state.t, &mut loads[0]);
+            system.balanced_load_into(state.t, &mut loads[0]);
         }
         system.load_density_into(t_next, &mut loads[1]);
         self.equilibrium.check_loads(system, t_next, &loads[1])?;

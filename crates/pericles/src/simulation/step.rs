@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::archive::{Archive, Checkpointed};
+use crate::boundary::Exchange;
 use crate::error::PericlesError;
 use crate::interrupt::Interrupt;
 use crate::time::State;
@@ -41,10 +42,8 @@ impl Simulation {
                 interrupt,
             )
             .and_then(|()| self.system.end_fields(self.state.t));
-        if stepped.is_ok() {
-            let State { t, u, v, a, .. } = &mut self.state;
-            let accelerations = (!self.integrator.is_static()).then_some(&mut a[..]);
-            self.system.activate(*t, [u, v], accelerations);
+        if stepped.is_ok() && self.system.activates_at(self.state.t) {
+            self.activate();
         }
         if fallible && self.system.has_failed() {
             stepped = Err(PericlesError::Interrupted);
@@ -56,6 +55,30 @@ impl Simulation {
             }
         }
         stepped
+    }
+
+    /// Activates the points whose time has come. The energy that the scheme attributes to the state changes with the
+    /// accelerations of new points; like their kinetic energy it comes from outside.
+    fn activate(&mut self) {
+        let correction = |simulation: &Self| {
+            let Self {
+                system,
+                integrator,
+                state,
+                dt,
+                ..
+            } = simulation;
+            integrator.energy_correction(system, state, *dt)
+        };
+        let before = correction(self);
+        let State { t, u, v, a, .. } = &mut self.state;
+        let accelerations = (!self.integrator.is_static()).then_some(&mut a[..]);
+        self.system.activate(*t, [u, v], accelerations);
+        let work = correction(self) - before;
+        self.system.book_exchange(Exchange {
+            work,
+            ..Exchange::default()
+        });
     }
 
     /// Saves everything that a step changes.

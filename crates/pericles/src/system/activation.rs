@@ -19,6 +19,8 @@ pub(super) struct Activation {
     times: Vec<f64>,
     /// Time up to which points have become active, s.
     reached: f64,
+    /// Points that became active after this time, s, have not been in equilibrium with their loads.
+    settled: f64,
     /// Earliest later time at which a point of any process becomes active, s; infinite if there is none.
     next: f64,
     /// Own points that are not active.
@@ -40,7 +42,7 @@ pub struct ActivationRange {
 
 crate::saved! {
     impl Checkpointed for Activation {
-        reached: array("activation/reached"),
+        reached, settled: array("activation/reached"),
         times: fixed,
         next, held: rebuilt,
     }
@@ -49,6 +51,21 @@ crate::saved! {
 impl Activation {
     fn is_active(&self, i: usize) -> bool {
         is_due(self.times[i], self.reached)
+    }
+
+    /// Returns the shares of its loads that act on a point at the start and the end of a step: no load acts on a point that
+    /// is not active. Between static states the loads of a new point grow from zero.
+    pub fn load_shares(&self, i: usize, is_static: bool) -> [f64; 2] {
+        match self.is_active(i) {
+            false => [0.0; 2],
+            true if is_static && !is_due(self.times[i], self.settled) => [0.0, 1.0],
+            true => [1.0; 2],
+        }
+    }
+
+    /// Ends a step between static states, in which all points are in equilibrium.
+    pub fn settle(&mut self) {
+        self.settled = self.reached;
     }
 }
 
@@ -61,8 +78,9 @@ impl System {
     /// Sets the time from which each own point belongs to the body, s. Points of the past belong to it from the start.
     ///
     /// A point that is not active has no bonds and no acceleration. When it becomes active, at the end of a step, it takes
-    /// displacement and velocity of the affine motion that fits the active points of its family best, and its bonds to other active points come
-    /// into being free of force. Its kinetic energy and momentum count as work and impulse from outside.
+    /// displacement and velocity of the affine motion that fits the active points of its family best, and its bonds to other
+    /// active points come into being free of force. Its kinetic energy and momentum count as work and impulse from outside.
+    /// Loads act on active points only.
     ///
     /// # Errors
     /// A number of times other than that of the points; times that are NaN; forces whose bonds cannot come into being
@@ -90,6 +108,7 @@ impl System {
         self.activation = Some(Activation {
             times,
             reached: f64::NEG_INFINITY,
+            settled: f64::NEG_INFINITY,
             next: f64::INFINITY,
             held: Vec::new(),
         });
@@ -135,12 +154,19 @@ impl System {
             return;
         };
         activation.reached = t;
+        activation.settled = t;
         self.find_next();
         let active = self.active();
         if let Some(growing) = self.operator_mut().growing_mut() {
             growing.start_with(&active);
         }
         self.hold_inactive(v);
+    }
+
+    /// Returns whether points of any process become active at the end of a step, time t.
+    pub(crate) fn activates_at(&self, t: f64) -> bool {
+        let activation = self.activation.as_ref();
+        activation.is_some_and(|activation| is_due(activation.next, t))
     }
 
     /// Activates the points whose time has come at the end of a step: changes their displacements u and velocities v, and
@@ -154,9 +180,6 @@ impl System {
         let Some(activation) = &mut self.activation else {
             return;
         };
-        if !is_due(activation.next, t) {
-            return;
-        }
         let before = std::mem::replace(&mut activation.reached, t);
         let is_new = |i: &usize| activation.is_active(*i) && !is_due(activation.times[*i], before);
         let new: Vec<usize> = (0..activation.times.len()).filter(is_new).collect();
@@ -179,6 +202,19 @@ impl System {
         }
         if let Some(a) = accelerations {
             self.acceleration(t, u, v, PointSubset::All, a);
+        }
+    }
+
+    /// Computes the loads with which a static state at time t is in equilibrium, N/m³: without those on points that have
+    /// become active since it was found.
+    pub fn balanced_load_into(&self, t: f64, out: &mut [f64]) {
+        self.load_density_into(t, out);
+        let Some(activation) = &self.activation else {
+            return;
+        };
+        let n = self.points();
+        for (entry, load) in out.iter_mut().enumerate() {
+            *load *= activation.load_shares(entry % n, true)[0];
         }
     }
 

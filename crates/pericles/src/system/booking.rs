@@ -9,8 +9,15 @@ impl System {
     /// all points at its end.
     pub fn book_step(&mut self, step: &StepEnd<'_>, acceleration: &[f64]) {
         let n = self.points();
+        let is_static = matches!(step.path, Path::Chord { .. });
+        let activation = self.activation.as_ref();
+        let shares = |i: usize| activation.map_or([1.0; 2], |one| one.load_shares(i, is_static));
         for load in &self.loads {
-            self.ledger.book_load(step, load, self.loading, &self.cloud);
+            let at = (self.loading, &*self.cloud);
+            self.ledger.book_load(step, load, at, shares);
+        }
+        if is_static && let Some(activation) = &mut self.activation {
+            activation.settle();
         }
         let density = |i: usize| self.density.at(i);
         let chord = match step.path {

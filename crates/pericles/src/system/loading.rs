@@ -66,5 +66,6 @@ impl System {
         for load in &self.loads {
             load.add_force(at, on, self.points(), self.dimension(), out);
         }
+        self.hold_inactive(out);
     }
 }
