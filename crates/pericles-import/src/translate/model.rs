@@ -14,7 +14,7 @@ enum Law {
     Correspondence,
 }
 
-/// A property of a material model besides its law.
+/// A property of a material model that is not part of its force law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
     Elastic,

@@ -159,7 +159,7 @@ fields! {
     /// Number of the fragment that the point belongs to, from 0 in the order of the first points. 0 for bodies whose bonds do not break.
     FragmentId: "Fragment_Id", "", Integer, None, |now| Fragments::numbers(now.system).into();
     /// 1 for points that belong to the body, 0 for those that become active later. 1 for bodies whose points are all active.
-    Active: "Active", "", Integer, None, |now| now.active().into();
+    Active: "Active", "", Integer, None, |now| now.system.active_marks().into();
 }
 
 impl Field {
@@ -286,13 +286,6 @@ impl<'a> FieldValues<'a> {
         };
         let density = self.system.density();
         (0..n).map(|i| 0.5 * density.at(i) * square(i)).collect()
-    }
-
-    fn active(&self) -> Vec<f64> {
-        let points = 0..self.system.points();
-        points
-            .map(|i| f64::from(u8::from(self.system.is_active(i))))
-            .collect()
     }
 }
 

@@ -120,10 +120,13 @@ impl System {
         self.activation.is_some()
     }
 
-    /// Returns whether an own point belongs to the body.
-    pub fn is_active(&self, i: usize) -> bool {
-        let activation = self.activation.as_ref();
-        activation.is_none_or(|activation| activation.is_active(i))
+    /// Returns 1 for each own point that belongs to the body, and 0 for the others.
+    pub(crate) fn active_marks(&self) -> Vec<f64> {
+        let mut marks = vec![1.0; self.points()];
+        for &i in self.activation.iter().flat_map(|one| &one.held) {
+            marks[i as usize] = 0.0;
+        }
+        marks
     }
 
     /// Returns when points become active after the start of a run; `None` if all belong to the body from the start. All
@@ -222,9 +225,7 @@ impl System {
     /// point without any keeps its displacement and velocity.
     fn place_new(&mut self, new: &[usize], [u, v]: [&mut [f64]; 2]) {
         let (n, dimension) = (self.points(), self.dimension());
-        let mut placed: Vec<f64> = (0..n)
-            .map(|i| f64::from(u8::from(self.is_active(i))))
-            .collect();
+        let mut placed = self.active_marks();
         for &i in new {
             placed[i] = 0.0;
         }
@@ -322,9 +323,7 @@ impl System {
 
     /// Returns which points are active, ghosts after own points.
     fn active(&self) -> Vec<bool> {
-        let own: Vec<f64> = (0..self.points())
-            .map(|i| f64::from(u8::from(self.is_active(i))))
-            .collect();
+        let own = self.active_marks();
         let all = self.domain().with_ghosts(&own);
         all.iter().map(|mark| *mark != 0.0).collect()
     }
