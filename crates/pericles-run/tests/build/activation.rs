@@ -2,10 +2,10 @@
 
 use pericles::observe::Field;
 use pericles::round_trip::check_resume;
-use pericles::{Archive, Checkpointed, Control, Simulation};
+use pericles::{Control, Simulation};
 use pericles_run::HeatBalance;
 
-use super::{build, rejection};
+use super::{build, rejection, stored, with_threads};
 
 /// Runs a deck to its end.
 fn end(deck: &str) -> Simulation {
@@ -262,15 +262,7 @@ fn growth_does_not_depend_on_threads() {
         let deck = GROWING
             .replace("MODEL", model)
             .replace("[28, 10]", "[60, 30]");
-        let end = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            pool.unwrap().install(|| {
-                let run = end(&deck);
-                let mut archive = Archive::default();
-                run.save(&mut archive);
-                archive
-            })
-        };
+        let end = |threads: usize| with_threads(threads, || stored(&end(&deck)));
         assert_eq!(end(1).differences(&end(3)), [""; 0], "{model}");
     }
 }

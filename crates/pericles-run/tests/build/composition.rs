@@ -9,6 +9,8 @@ use pericles::observe::Energies;
 use pericles::{Archive, Checkpointed, Control, Simulation};
 use pericles_deck::{Deck, DeckError};
 
+use super::{stored, with_threads};
+
 /// A small free plate under a load with an initial velocity at one place; its momentum is the impulse of the load.
 const PLATE: &str = r#"body = { shape = "plate", size = [40, 30], spacing = 1, plane = "stress", periodic = PERIODIC }
 material = { model = "linear", density = 1, youngs_modulus = 1, horizon_ratio = 3, bonds = "OPERATOR" }
@@ -189,12 +191,6 @@ fn advance(run: &mut Simulation, steps: Option<u64>) {
     .unwrap();
 }
 
-fn stored(run: &Simulation) -> Archive {
-    let mut archive = Archive::default();
-    run.save(&mut archive);
-    archive
-}
-
 /// Results of a finished run.
 pub struct Ended {
     pub archive: Archive,
@@ -233,16 +229,12 @@ impl Ended {
 
 /// Runs a deck, and checks that other numbers of threads and a stop give bitwise identical results.
 pub fn run_every_way(text: &str) -> Ended {
-    let on = |threads: usize, work: &(dyn Fn() -> Ended + Sync)| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        pool.unwrap().install(work)
-    };
     let whole = || {
         let mut run = simulation(text);
         advance(&mut run, None);
         Ended::of(&run)
     };
-    let first = on(1, &whole);
+    let first = with_threads(1, whole);
     let half = (first.steps / 2).max(1);
     let resumed = || {
         let mut begun = simulation(text);
@@ -256,7 +248,7 @@ pub fn run_every_way(text: &str) -> Ended {
     let ways: [(usize, &(dyn Fn() -> Ended + Sync)); 4] =
         [(2, &whole), (3, &whole), (7, &whole), (2, &resumed)];
     for (threads, way) in ways {
-        let same = on(threads, way).archive == first.archive;
+        let same = with_threads(threads, way).archive == first.archive;
         assert!(same, "{threads} threads\n{text}");
     }
     first

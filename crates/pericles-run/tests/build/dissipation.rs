@@ -2,12 +2,12 @@
 
 use pericles::observe::Field;
 use pericles::round_trip::check_resume;
-use pericles::{Archive, Checkpointed, Control, Simulation};
+use pericles::{Control, Simulation};
 use pericles_deck::{Conduction, ConductionScheme, Model};
 use pericles_heat::{DiffusingField, SharedField};
 use pericles_run::{HeatBalance, Resources, discretise};
 
-use super::{build, parse};
+use super::{build, parse, stored, with_threads};
 
 /// Share of the dissipated energy that becomes heat.
 const SHARE: f64 = 0.9;
@@ -204,13 +204,10 @@ fn heat_from_dissipation_does_not_depend_on_threads() {
         // Three blocks of points.
         let deck = deck(model, thermal, "end = 3, dt = 0.1").replace("[28, 10]", "[56, 20]");
         let end = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            pool.unwrap().install(|| {
+            with_threads(threads, || {
                 let mut run = build(&deck).simulation();
                 run.run(|_| Control::Continue).unwrap();
-                let mut archive = Archive::default();
-                run.save(&mut archive);
-                archive
+                stored(&run)
             })
         };
         assert_eq!(end(1).differences(&end(3)), [""; 0], "{model}");

@@ -55,6 +55,7 @@ mod wrong;
 
 use common::{Build, Built};
 use decks::WAVE;
+use pericles::{Archive, Checkpointed, Simulation};
 use pericles_deck::{Deck, DeckError};
 
 fn parse(text: &str) -> Deck {
@@ -65,6 +66,19 @@ fn build(text: &str) -> Built {
     parse(text)
         .build()
         .unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// Does work with a number of threads.
+fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.unwrap().install(work)
+}
+
+/// Returns the state of a run as a checkpoint stores it.
+fn stored(run: &Simulation) -> Archive {
+    let mut archive = Archive::default();
+    run.save(&mut archive);
+    archive
 }
 
 fn rejection(text: &str) -> DeckError {
